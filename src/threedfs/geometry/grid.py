@@ -1,0 +1,43 @@
+"""Voxel grids: laying them over a box, and the way between voxels and world."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from threedfs.types import VoxelGrid
+
+
+def cover_box(low: np.ndarray, high: np.ndarray, longest: int) -> VoxelGrid:
+    """Lay a grid of cubic voxels over a box so that its longest side has `longest` voxels.
+
+    The box is covered from face to face: the first voxel centre lies half a voxel inside `low`.
+    """
+    extent = np.asarray(high, float) - low
+    spacing = float(extent.max() / longest)
+    shape = tuple(int(n) for n in np.maximum(np.ceil(extent / spacing - 1e-9), 1))
+    return VoxelGrid(np.asarray(low, float) + spacing / 2, spacing, shape)
+
+
+def voxel_centres(grid: VoxelGrid) -> np.ndarray:
+    """Return the world coordinates of all voxel centres, (nx, ny, nz, 3) float64."""
+    return np.stack(np.meshgrid(*(grid.axis(d) for d in range(3)), indexing="ij"), axis=-1)
+
+
+def voxel_from_world(grid: VoxelGrid, points: np.ndarray) -> np.ndarray:
+    """Return continuous voxel indices (..., 3) of world points; integers are voxel centres."""
+    return (points - grid.origin) / grid.spacing
+
+
+def voxel_index(grid: VoxelGrid, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Hash world points (N, 3) to the voxels that contain them.
+
+    Returns
+    -------
+    index : (M, 3) int64
+        Voxel of each point that lies in the grid.
+    kept : (N,) bool
+        Which points those are.
+    """
+    index = np.floor(voxel_from_world(grid, points) + 0.5)
+    kept = np.all((index >= 0) & (index < grid.shape), axis=-1)
+    return index[kept].astype(np.int64), kept

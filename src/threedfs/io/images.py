@@ -1,0 +1,55 @@
+"""Single images and masks."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from threedfs.errors import UserError
+from threedfs.io.atomic import atomic
+
+
+def read_image(path: Path) -> np.ndarray:
+    """Read an image file as (H, W, 3) uint8 RGB, upright by its EXIF orientation.
+
+    Raises
+    ------
+    UserError
+        If the file is missing or cannot be decoded.
+    """
+    image = cv2.imread(str(path), cv2.IMREAD_COLOR) if Path(path).is_file() else None
+    if image is None:
+        raise UserError(f"{path}: expected an image, found none that can be decoded; check the file.")
+    return np.ascontiguousarray(image[..., ::-1])
+
+
+def write_png(path: Path, image: np.ndarray) -> None:
+    """Write (H, W) or (H, W, 3) RGB uint8 as PNG."""
+    if image.ndim == 3:
+        image = image[..., ::-1]
+    done, data = cv2.imencode(".png", np.ascontiguousarray(image), [cv2.IMWRITE_PNG_COMPRESSION, 6])
+    if not done:
+        raise UserError(f"{path}: the image of shape {image.shape} could not be encoded as PNG.")
+    with atomic(path) as temporary:
+        temporary.write_bytes(data.tobytes())
+
+
+def read_mask(path: Path) -> np.ndarray:
+    """Read a mask (H, W) bool: true where the file is brighter than half.
+
+    Raises
+    ------
+    UserError
+        If the file is missing or cannot be decoded.
+    """
+    mask = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE) if Path(path).is_file() else None
+    if mask is None:
+        raise UserError(f"{path}: expected a mask image, found none that can be decoded; check the file.")
+    return mask > 127
+
+
+def write_mask(path: Path, mask: np.ndarray) -> None:
+    """Write a mask (H, W) bool as PNG: 255 object, 0 background."""
+    write_png(path, mask.astype(np.uint8) * 255)

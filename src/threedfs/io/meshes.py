@@ -1,0 +1,44 @@
+"""Meshes and coloured points as binary PLY."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import trimesh
+
+from threedfs.errors import UserError
+from threedfs.io.atomic import atomic
+from threedfs.types import Mesh
+
+
+def write_mesh(path: Path, mesh: Mesh) -> None:
+    """Write a mesh as binary PLY."""
+    data = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(file_type="ply", vertex_normal=False)
+    with atomic(path) as temporary:
+        temporary.write_bytes(data)
+
+
+def read_mesh(path: Path) -> Mesh:
+    """Read a triangle mesh from any format that trimesh reads (PLY, OBJ, STL, GLB, ...).
+
+    Raises
+    ------
+    UserError
+        If the file is missing, unreadable or holds no triangles.
+    """
+    path = Path(path)
+    if not path.is_file():
+        raise UserError(f"{path}: expected a mesh file, found none; check the path in the configuration.")
+    try:
+        mesh = trimesh.load(path, force="mesh", process=False)
+        return Mesh(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64))
+    except Exception as fault:
+        raise UserError(f"{path}: expected a triangle mesh, got something that cannot be read ({fault}).") from fault
+
+
+def write_point_cloud(path: Path, xyz: np.ndarray, rgb: np.ndarray) -> None:
+    """Write points (N, 3) with colours (N, 3) uint8 as binary PLY."""
+    data = trimesh.PointCloud(xyz, np.column_stack([rgb, np.full(len(rgb), 255, np.uint8)])).export(file_type="ply")
+    with atomic(path) as temporary:
+        temporary.write_bytes(data)

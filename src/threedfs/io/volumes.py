@@ -1,0 +1,103 @@
+"""Volumes on a voxel grid, the support plane, silhouettes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from threedfs.io.arrays import read_arrays, write_arrays, writing_arrays
+from threedfs.io.documents import read_document, write_document
+from threedfs.io.schema import SILHOUETTES, SUPPORT, VOLUME
+from threedfs.types import Plane, VoxelGrid
+
+
+@dataclass(frozen=True)
+class Volume:
+    """A signed distance field on a grid.
+
+    Attributes
+    ----------
+    grid : VoxelGrid
+    sdf : (nx, ny, nz) float32, in [-1, 1], positive in empty space, negative inside
+    seen : (nx, ny, nz) uint8, the number of views that see the voxel, in front of their surface or behind it
+    """
+
+    grid: VoxelGrid
+    sdf: np.ndarray
+    seen: np.ndarray
+
+
+@dataclass(frozen=True)
+class Support:
+    """Where the object stands.
+
+    Attributes
+    ----------
+    plane : Plane
+        The support surface; its positive side holds the object and the cameras.
+    low, high : (3,) float64
+        Box of the object, world, scene units.
+    figures : mapping of str to float
+        What the search for them found (inlier share, ...).
+    """
+
+    plane: Plane
+    low: np.ndarray
+    high: np.ndarray
+    figures: Mapping[str, float]
+
+
+def write_volume(path: Path, volume: Volume, header: Mapping[str, Any]) -> None:
+    """Write a volume."""
+    write_arrays(
+        path,
+        VOLUME,
+        {"sdf": volume.sdf, "seen": volume.seen},
+        header,
+        {"sdf": {"sign": "positive in empty space", "unit": "clip distance"}},
+        axes="x, y, z",
+        origin=[float(x) for x in volume.grid.origin],
+        spacing=float(volume.grid.spacing),
+    )
+
+
+def read_volume(path: Path) -> Volume:
+    """Read a volume."""
+    arrays, attributes = read_arrays(path, VOLUME)
+    grid = VoxelGrid(np.array(attributes["origin"]), attributes["spacing"], arrays["sdf"].shape)
+    return Volume(grid, arrays["sdf"], arrays["seen"])
+
+
+def write_support(path: Path, support: Support, header: Mapping[str, Any]) -> None:
+    """Write support.json."""
+    content = {
+        "unit": "scene unit",
+        "plane": {"normal": support.plane.normal.tolist(), "offset": float(support.plane.offset)},
+        "box": {"low": support.low.tolist(), "high": support.high.tolist()},
+        "figures": dict(support.figures),
+    }
+    write_document(path, SUPPORT, content, header)
+
+
+def read_support(path: Path) -> Support:
+    """Read support.json."""
+    content = read_document(path, SUPPORT)
+    plane = Plane(np.array(content["plane"]["normal"]), content["plane"]["offset"])
+    box = content["box"]
+    return Support(plane, np.array(box["low"]), np.array(box["high"]), content["figures"])
+
+
+def write_silhouettes(path: Path, silhouettes: Mapping[str, np.ndarray], header: Mapping[str, Any]) -> None:
+    """Write masks (H, W) bool by view name."""
+    with writing_arrays(path, SILHOUETTES, header) as writer:
+        for name, mask in silhouettes.items():
+            writer.put(name, mask, axes="row, column")
+
+
+def read_silhouettes(path: Path) -> dict[str, np.ndarray]:
+    """Read masks (H, W) bool by view name."""
+    return read_arrays(path, SILHOUETTES)[0]

@@ -1,0 +1,131 @@
+"""The data that pass between topics: frozen dataclasses of arrays.
+
+Conventions (docs/conventions.md): right-handed; camera x right, y down, z forward; pixel (u, v) =
+(column, row) with integer coordinates at pixel centres; depth is camera-frame z; missing is NaN.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Camera:
+    """A pinhole camera without distortion, in pixels; integer coordinates are pixel centres."""
+
+    width: int
+    height: int
+    fx: float
+    fy: float
+    cx: float
+    cy: float
+
+    @property
+    def px_from_cam(self) -> np.ndarray:
+        """(3, 3) float64 intrinsic matrix."""
+        return np.array([[self.fx, 0, self.cx], [0, self.fy, self.cy], [0, 0, 1]], dtype=np.float64)
+
+    @property
+    def shape(self) -> tuple[int, int]:
+        """(rows, columns) of its images."""
+        return (self.height, self.width)
+
+
+@dataclass(frozen=True)
+class View:
+    """A posed image: its frame name, camera, and rigid (4, 4) float64 `cam_from_world`."""
+
+    name: str
+    camera: Camera
+    cam_from_world: np.ndarray
+
+    @property
+    def centre(self) -> np.ndarray:
+        """(3,) camera centre in world coordinates, scene units."""
+        return -self.cam_from_world[:3, :3].T @ self.cam_from_world[:3, 3]
+
+    @property
+    def px_from_world(self) -> np.ndarray:
+        """(3, 4) projection matrix to homogeneous pixels; its third row gives depth."""
+        return self.camera.px_from_cam @ self.cam_from_world[:3]
+
+
+@dataclass(frozen=True)
+class Keyframe:
+    """A view for which depth is computed.
+
+    Attributes
+    ----------
+    view : View
+    neighbours : tuple of View
+        The frames it is matched against, best first.
+    near, far : float
+        Expected depth range, scene units.
+    """
+
+    view: View
+    neighbours: tuple[View, ...]
+    near: float
+    far: float
+
+
+@dataclass(frozen=True)
+class SparsePoints:
+    """Triangulated scene points with visibility.
+
+    Attributes
+    ----------
+    xyz : (N, 3) float64, world, scene units
+    rgb : (N, 3) uint8
+    error : (N,) float64, mean reprojection error in pixels
+    track_point : (M,) int64, index into xyz of each observation, ascending
+    track_frame : (M,) int64, index of the frame (in the order of poses.json) that sees it
+    """
+
+    xyz: np.ndarray
+    rgb: np.ndarray
+    error: np.ndarray
+    track_point: np.ndarray
+    track_frame: np.ndarray
+
+    def seen_by(self, frame: int) -> np.ndarray:
+        """Indices of the points that frame number `frame` sees."""
+        return self.track_point[self.track_frame == frame]
+
+
+@dataclass(frozen=True)
+class VoxelGrid:
+    """A regular grid: `origin` (3,) is the centre of voxel (0, 0, 0), `spacing` its edge, `shape` (nx, ny, nz).
+
+    Volumes on it are indexed [ix, iy, iz] with values at voxel centres. World coordinates, scene units.
+    """
+
+    origin: np.ndarray
+    spacing: float
+    shape: tuple[int, int, int]
+
+    def axis(self, dimension: int) -> np.ndarray:
+        """Coordinates of the voxel centres along one axis, (shape[dimension],) float64."""
+        return self.origin[dimension] + self.spacing * np.arange(self.shape[dimension])
+
+
+@dataclass(frozen=True)
+class Plane:
+    """Points x with normal . x + offset = 0; the signed distance is positive on the side of the cameras."""
+
+    normal: np.ndarray
+    offset: float
+
+    def distance(self, points: np.ndarray) -> np.ndarray:
+        """Signed distance of points (..., 3), scene units."""
+        return points @ self.normal + self.offset
+
+
+@dataclass(frozen=True)
+class Mesh:
+    """A triangle mesh: vertices (V, 3) float64 world; faces (F, 3) int64, counter-clockwise from outside."""
+
+    vertices: np.ndarray
+    faces: np.ndarray
