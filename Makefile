@@ -1,0 +1,46 @@
+# make demo   set everything up in .venv and reconstruct the sample
+# make test   set everything up and run all tests
+# make resume go on after a run was killed
+# make config rewrite config/ from the parameters declared in src/threedfs/params/
+# make lock   rewrite the hashed pins from envs/requirements.in
+PYTHON ?= $(shell command -v python3.11 || command -v python3)
+CORES ?= 2
+BIN := .venv/bin
+PINS := $(shell cksum < envs/requirements.txt | tr ' ' '-')
+READY := .venv/.ready-$(PINS)
+
+.PHONY: demo test resume config lock setup
+
+demo: setup
+	$(BIN)/snakemake --cores $(CORES)
+
+test: setup
+	$(BIN)/ruff check .
+	$(BIN)/ruff format --check .
+	$(BIN)/snakefmt --check Snakefile workflow
+	$(BIN)/python -m pytest
+
+resume: setup
+	$(BIN)/snakemake --cores $(CORES) --unlock
+	$(BIN)/snakemake --cores $(CORES) --rerun-incomplete
+
+config: setup
+	$(BIN)/python -m threedfs.params.document
+
+lock: setup
+	$(BIN)/python -m venv .venv/lock
+	.venv/lock/bin/pip install --quiet pip-tools
+	.venv/lock/bin/pip-compile --quiet --generate-hashes --strip-extras --allow-unsafe --no-header \
+	    --no-emit-index-url --no-emit-find-links --no-emit-trusted-host \
+	    --output-file envs/requirements.txt envs/requirements.in
+
+setup: $(READY)
+
+# the environment is made anew only when the pins change
+$(READY): envs/requirements.txt pyproject.toml
+	@echo "Setting up .venv from hashed pins; the first time takes some minutes."
+	$(PYTHON) -m venv .venv
+	$(BIN)/pip install --quiet --disable-pip-version-check --require-hashes -r envs/requirements.txt
+	$(BIN)/pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	rm -f .venv/.ready-*
+	touch $@

@@ -1,0 +1,46 @@
+# From a handheld video to the mesh of its object: the table of contents.
+# Configuration: config/README.md. Stages in order; each is a rule file here and a module in src/threedfs/stages/.
+from snakemake.utils import min_version
+
+min_version("9.27")
+
+
+configfile: Path(workflow.basedir) / "config" / "config.yaml"
+
+
+include: "workflow/rules/common.smk"
+include: "workflow/rules/frames.smk"
+include: "workflow/rules/poses.smk"
+include: "workflow/rules/keyframes.smk"
+include: "workflow/rules/semidense.smk"
+include: "workflow/rules/edges.smk"
+include: "workflow/rules/depth.smk"
+include: "workflow/rules/fusion.smk"
+include: "workflow/rules/object.smk"
+include: "workflow/rules/evaluate.smk"
+
+
+rule all:
+    default_target: True
+    input:
+        expand(
+            "results/{sequence}/11_object/{method}/{artifact}",
+            sequence=SEQUENCES,
+            method=config["methods"],
+            artifact=["mesh.ply", "masks"],
+        ),
+        "results/metrics.csv",
+
+
+onsuccess:
+    from threedfs.run_end import summarise_run
+
+    sys.stderr.write(
+        summarise_run(Path("results"), Path(config["store"]), since=STARTED)
+    )
+
+
+onerror:
+    from threedfs.run_end import find_failures
+
+    sys.stderr.write(find_failures(Path("results"), since=STARTED))

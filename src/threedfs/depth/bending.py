@@ -1,0 +1,116 @@
+"""Smoothness priors: squared differences of the depth, and the stencils of their normal equations (Eq. 3).
+
+A prior is a sum over pixels of weight(u) times squared finite differences. Its matrix is symmetric and couples
+a pixel with those at most two steps away, so half of a 13-point stencil stores it.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numba import njit
+
+PRIORS = ("first_order", "second_order", "rotation_invariant")
+
+HALF_OFFSETS = (
+    (0, 0),
+    (0, 1),
+    (0, 2),
+    (1, -2),
+    (1, -1),
+    (1, 0),
+    (1, 1),
+    (1, 2),
+    (2, -2),
+    (2, -1),
+    (2, 0),
+    (2, 1),
+    (2, 2),
+)
+"""(row, column) steps whose coefficients are stored; those of the opposite steps follow by symmetry."""
+
+_ORDER = {"first_order": 1, "second_order": 2, "rotation_invariant": 3}
+
+
+def assemble_prior(weight: np.ndarray, prior: str) -> np.ndarray:
+    """Assemble the half stencil of a smoothness prior.
+
+    Parameters
+    ----------
+    weight : (H, W) float64
+        Weight of the energy at each pixel (the part of lambda_s that does not change with iterations).
+    prior : {"first_order", "second_order", "rotation_invariant"}
+        Squared gradient; squared second derivatives along the axes; these and twice the squared mixed
+        derivative, the bending energy that an in-plane rotation of the camera leaves unchanged (Eq. 3).
+
+    Differences between pixel centres (gradients, the mixed derivative) take the least weight of their pixels, so
+    that an edge one pixel wide cuts them too.
+
+    Returns
+    -------
+    (H, W, 13) float64
+        Coefficients in the order of `HALF_OFFSETS` of the matrix whose quadratic form is the energy.
+    """
+    return _assemble(np.ascontiguousarray(weight, np.float64), _ORDER[prior])
+
+
+def prior_energy(depth: np.ndarray, weight: np.ndarray, prior: str) -> float:
+    """Evaluate the prior's energy from its definition (Eq. 3), to hold the stencil against."""
+    if prior == "first_order":
+        along_u = np.minimum(weight[:, :-1], weight[:, 1:]) * np.diff(depth, axis=1) ** 2
+        along_v = np.minimum(weight[:-1], weight[1:]) * np.diff(depth, axis=0) ** 2
+        return float(along_u.sum() + along_v.sum())
+    energy = (weight[:, 1:-1] * np.diff(depth, 2, axis=1) ** 2).sum()
+    energy += (weight[1:-1] * np.diff(depth, 2, axis=0) ** 2).sum()
+    if prior == "rotation_invariant":
+        mixed = np.diff(np.diff(depth, axis=0), axis=1)
+        cell = np.minimum(np.minimum(weight[:-1, :-1], weight[:-1, 1:]), np.minimum(weight[1:, :-1], weight[1:, 1:]))
+        energy += (2 * cell * mixed**2).sum()
+    return float(energy)
+
+
+@njit(cache=True)
+def _assemble(weight, order):
+    height, width = weight.shape
+    stencil = np.zeros((height, width, 13))
+    for v in range(height):
+        for u in range(width):
+            if order == 1:
+                if u + 1 < width:
+                    w = min(weight[v, u], weight[v, u + 1])
+                    stencil[v, u, 0] += w
+                    stencil[v, u + 1, 0] += w
+                    stencil[v, u, 1] -= w
+                if v + 1 < height:
+                    w = min(weight[v, u], weight[v + 1, u])
+                    stencil[v, u, 0] += w
+                    stencil[v + 1, u, 0] += w
+                    stencil[v, u, 5] -= w
+                continue
+            w = weight[v, u]
+            if 0 < u < width - 1:
+                stencil[v, u - 1, 0] += w
+                stencil[v, u, 0] += 4 * w
+                stencil[v, u + 1, 0] += w
+                stencil[v, u - 1, 1] -= 2 * w
+                stencil[v, u, 1] -= 2 * w
+                stencil[v, u - 1, 2] += w
+            if 0 < v < height - 1:
+                stencil[v - 1, u, 0] += w
+                stencil[v, u, 0] += 4 * w
+                stencil[v + 1, u, 0] += w
+                stencil[v - 1, u, 5] -= 2 * w
+                stencil[v, u, 5] -= 2 * w
+                stencil[v - 1, u, 10] += w
+            if order == 3 and u + 1 < width and v + 1 < height:
+                w = 2 * min(min(weight[v, u], weight[v, u + 1]), min(weight[v + 1, u], weight[v + 1, u + 1]))
+                stencil[v, u, 0] += w
+                stencil[v, u + 1, 0] += w
+                stencil[v + 1, u, 0] += w
+                stencil[v + 1, u + 1, 0] += w
+                stencil[v, u, 1] -= w
+                stencil[v + 1, u, 1] -= w
+                stencil[v, u, 5] -= w
+                stencil[v, u + 1, 5] -= w
+                stencil[v, u, 6] += w
+                stencil[v, u + 1, 4] += w
+    return stencil

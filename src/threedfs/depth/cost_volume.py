@@ -1,0 +1,96 @@
+"""The photometric cost volume (Section 3.2, Eq. 1)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+
+import cv2
+import numpy as np
+
+from threedfs.depth.zncc import MISSING, accumulate_cost, describe_patches
+from threedfs.geometry.rigid import invert
+from threedfs.types import View
+
+
+def plane_homography(reference: View, neighbour: View, depth: float) -> np.ndarray:
+    """Return the (3, 3) map from reference pixels to neighbour pixels for the plane z = `depth` of the reference."""
+    neighbour_from_reference = neighbour.cam_from_world @ invert(reference.cam_from_world)
+    through_plane = neighbour_from_reference[:3, :3].copy()
+    through_plane[:, 2] += neighbour_from_reference[:3, 3] / depth
+    return neighbour.camera.px_from_cam @ through_plane @ np.linalg.inv(reference.camera.px_from_cam)
+
+
+def compute_cost_volume(
+    reference: View,
+    reference_grey: np.ndarray,
+    neighbours: Sequence[View],
+    read_grey: Callable[[View], np.ndarray],
+    candidates: np.ndarray,
+    *,
+    patch_radius: int,
+    variance_floor: float,
+    missing_cost: float,
+    track: Callable[[Iterable], Iterable] = iter,
+) -> np.ndarray:
+    """Average the photometric error of every pixel and depth candidate over the neighbours (Eq. 1).
+
+    The neighbour's patch is taken through the fronto-parallel plane of the candidate, so that it covers the
+    same part of that plane as the reference's.
+
+    Parameters
+    ----------
+    reference : View
+    reference_grey : (H, W) float32
+        Centred grey levels, `MISSING` where the image shows nothing.
+    neighbours : sequence of View
+    read_grey : callable
+        Gives a neighbour's grey image in the same form; one at a time is held.
+    candidates : (D,) float64
+        Depths, ascending, scene units.
+    patch_radius : int
+        1 for the paper's 3x3 patches.
+    variance_floor : float
+        Grey levels squared; see `describe_patches`.
+    missing_cost : float
+        Error charged where a neighbour does not see the patch: that of no correlation is 0.5.
+    track : callable
+        Wraps the loop over neighbours to report progress.
+
+    Returns
+    -------
+    (D, H, W) float32 in [0, 1]
+
+    Notes
+    -----
+    Differs from the paper: variances have a floor, and a view that misses a pixel counts with a neutral error
+    instead of not at all, which would favour depths that few views see.
+    """
+    height, width = reference_grey.shape
+    patches = describe_patches(reference_grey, patch_radius, variance_floor)
+    grey = np.where(reference_grey > MISSING / 2, reference_grey, np.float32(0))
+    scratch = [np.empty(width, np.float32) for _ in range(3)]
+    cost = np.zeros((len(candidates), height, width), np.float32)
+    for neighbour in track(neighbours):
+        image = read_grey(neighbour)
+        for index, depth in enumerate(candidates):
+            warped = cv2.warpPerspective(
+                image,
+                plane_homography(reference, neighbour, depth),
+                (width, height),
+                flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
+                borderMode=cv2.BORDER_CONSTANT,
+                borderValue=float(MISSING),
+            )
+            accumulate_cost(
+                warped,
+                grey,
+                patches.mean,
+                patches.inverse_deviation,
+                patch_radius,
+                np.float32(variance_floor),
+                np.float32(missing_cost),
+                *scratch,
+                cost[index],
+            )
+    cost /= np.float32(len(neighbours))
+    return cost

@@ -1,0 +1,181 @@
+"""Step 2: the smooth surface nearest to measurements and photo-consistent depths (Section 3.2, Eq. 8)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+
+from threedfs.depth.multigrid import (
+    BORDER,
+    Level,
+    Preconditioner,
+    coarsen_diagonal,
+    coarsen_prior,
+    flat_offsets,
+    padded_shape,
+)
+
+_PADDING_WEIGHT = 1e-4
+"""Smoothness of the rows and columns that only fill the grid up: enough to be solvable, too little to pull."""
+
+
+@dataclass(frozen=True)
+class SurfaceProblem:
+    """The part of Eq. 8 that does not change with the iterations.
+
+    The matrix is measurement + coupling_factor * confidence + smoothness * prior, the first two diagonal.
+    """
+
+    shape: tuple[int, int]
+    padded: tuple[int, int]
+    prior: list[Level]
+    confidence: list[Level]
+    measurement: list[Level]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A solved surface: `depth` (H, W) float64, the estimated relative energy-norm error, and the steps it took."""
+
+    depth: np.ndarray
+    residual: float
+    steps: int
+
+
+def pose_problem(
+    edge_weight: np.ndarray, confidence: np.ndarray, measurement_weight: np.ndarray, prior: str
+) -> SurfaceProblem:
+    """Assemble the three matrices of Eq. 8 on all grids.
+
+    Parameters
+    ----------
+    edge_weight : (H, W) float64
+        The spatial factor of the smoothness weight (Eq. 9).
+    confidence : (H, W) float64
+        lambda_a (Eq. 11); 0 where no depth was searched.
+    measurement_weight : (H, W) float64
+        lambda_m; 0 where nothing was measured.
+    prior : str
+        See `assemble_prior`.
+    """
+    shape = edge_weight.shape
+    padded = padded_shape(shape)
+    return SurfaceProblem(
+        shape,
+        padded,
+        coarsen_prior(_pad(edge_weight, padded, _PADDING_WEIGHT), prior),
+        coarsen_diagonal(_pad(confidence, padded, 0.0)),
+        coarsen_diagonal(_pad(measurement_weight, padded, 0.0)),
+    )
+
+
+def solve_surface(
+    problem: SurfaceProblem,
+    auxiliary_depth: np.ndarray,
+    measured_depth: np.ndarray,
+    start: np.ndarray,
+    *,
+    coupling_factor: float,
+    smoothness: float,
+    tolerance: float,
+    max_steps: int,
+) -> Solution:
+    """Minimise Eq. 8 by conjugate gradients, preconditioned by multigrid, warm-started.
+
+    Parameters
+    ----------
+    auxiliary_depth, measured_depth, start : (H, W) float64
+        Values are read only where their weight is positive.
+    coupling_factor : float
+        1 / (2 theta).
+    smoothness : float
+        The factor of the smoothness weight that grows with the iterations.
+    tolerance : float
+        Stop when the energy norm of the error, estimated through the preconditioner, is below this share of the
+        energy norm of the right-hand side. A residual relative to the largest weight would mean nothing.
+    max_steps : int
+    """
+    confidence, measurement = problem.confidence[0].planes[0], problem.measurement[0].planes[0]
+    diagonal = coupling_factor * confidence + measurement
+    planes = problem.prior[0].planes
+    height, width = problem.padded
+    active = np.flatnonzero([plane.any() for plane in planes])
+    active = active[active > 0]
+    offsets = flat_offsets(active, width + 2 * BORDER)
+
+    def multiply(x: np.ndarray) -> np.ndarray:
+        return _multiply(planes, diagonal, smoothness, x, height, width, active, offsets)
+
+    right = coupling_factor * confidence * _flatten(auxiliary_depth, problem.padded, confidence > 0)
+    right += measurement * _flatten(measured_depth, problem.padded, measurement > 0)
+    preconditioner = Preconditioner(
+        [problem.prior, problem.confidence, problem.measurement], [smoothness, coupling_factor, 1.0]
+    )
+    solution = _flatten(start, problem.padded)
+    residual = right - multiply(solution)
+    scale = float(right @ preconditioner.apply(right)) or 1.0
+    direction = np.zeros_like(right)
+    previous = np.zeros_like(right)
+    energy_before = 1.0
+    error = np.inf
+    for step in range(max_steps + 1):
+        preconditioned = preconditioner.apply(residual)
+        energy = float(residual @ preconditioned)
+        error = np.sqrt(max(energy, 0.0) / scale)
+        if error <= tolerance or step == max_steps:
+            break
+        # Polak and Ribiere's factor forgives the rounding of a single-precision preconditioner.
+        factor = max((energy - float(previous @ preconditioned)) / energy_before, 0.0) if step else 0.0
+        direction *= factor
+        direction += preconditioned
+        product = multiply(direction)
+        length = energy / float(direction @ product)
+        solution += length * direction
+        previous = residual
+        residual = residual - length * product
+        energy_before = energy
+    inner = solution.reshape(height + 2 * BORDER, -1)[
+        BORDER : BORDER + problem.shape[0], BORDER : BORDER + problem.shape[1]
+    ]
+    return Solution(inner.copy(), float(error), step)
+
+
+def _pad(image: np.ndarray, padded: tuple[int, int], value: float) -> np.ndarray:
+    rows, columns = padded[0] - image.shape[0], padded[1] - image.shape[1]
+    return np.pad(image.astype(np.float64), ((0, rows), (0, columns)), constant_values=value)
+
+
+def _flatten(image: np.ndarray, padded: tuple[int, int], where: np.ndarray | None = None) -> np.ndarray:
+    rows, columns = padded[0] - image.shape[0], padded[1] - image.shape[1]
+    grown = np.pad(image.astype(np.float64), ((0, rows), (0, columns)), mode="edge")
+    flat = np.pad(grown, BORDER).ravel()
+    return flat if where is None else np.where(where, flat, 0.0)
+
+
+@njit(cache=True)
+def _multiply(planes, diagonal, smoothness, x, height, width, active, offsets):
+    stride = width + 2 * BORDER
+    out = np.zeros_like(x)
+    for v in range(height):
+        first = (v + BORDER) * stride + BORDER
+        last = first + width
+        row = out[first:last]
+        centre = planes[0, first:last]
+        here = x[first:last]
+        for u in range(width):
+            row[u] = centre[u] * here[u]
+        for n in range(len(active)):
+            k = active[n]
+            o = offsets[n]
+            ahead = planes[k, first:last]
+            behind = planes[k, first - o : last - o]
+            x_ahead = x[first + o : last + o]
+            x_behind = x[first - o : last - o]
+            for u in range(width):
+                row[u] += ahead[u] * x_ahead[u] + behind[u] * x_behind[u]
+        plain = diagonal[first:last]
+        for u in range(width):
+            row[u] = smoothness * row[u] + plain[u] * here[u]
+    return out

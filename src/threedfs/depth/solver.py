@@ -1,0 +1,98 @@
+"""Dense depth of one keyframe by two-step optimisation: the whole of Section 3.2 on one screen."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from threedfs.depth.linear_solve import pose_problem, solve_surface
+from threedfs.depth.search import search_depth
+from threedfs.depth.weights import coupling_schedule, smoothness_at
+
+
+@dataclass(frozen=True)
+class DepthSolution:
+    """Dense depth (H, W) float64, and for each iteration the linear solve's residual and steps."""
+
+    depth: np.ndarray
+    residuals: tuple[float, ...]
+    steps: tuple[int, ...]
+
+
+def optimise_depth(
+    cost_volume: np.ndarray,
+    candidates: np.ndarray,
+    confidence: np.ndarray,
+    measured_depth: np.ndarray,
+    measurement_weight: np.ndarray,
+    edge_weight: np.ndarray,
+    *,
+    prior: str,
+    iterations: int,
+    photometric_weight: float,
+    coupling: float,
+    coupling_decay: float,
+    median_size: int,
+    newton_rate: float,
+    smoothness: float,
+    smoothness_growth: float,
+    tolerance: float,
+    early_tolerance: float,
+    max_steps: int,
+    note: Callable[[str], None] = lambda message: None,
+) -> DepthSolution:
+    """Minimise Eq. 2 by alternating Eqs. 5-7 and Eq. 8.
+
+    Parameters
+    ----------
+    cost_volume : (D, H, W) float32
+        Photometric error in [0, 1] (Eq. 1).
+    candidates : (D,) float64
+        Depths, ascending, scene units.
+    confidence : (H, W) float64
+        lambda_a, 0 where the image shows nothing.
+    measured_depth, measurement_weight : (H, W) float64
+        Semi-dense depths and lambda_m, weight 0 where there is none.
+    edge_weight : (H, W) float64
+        Spatial factor of lambda_s.
+    Others
+        See `DepthParams`.
+
+    Notes
+    -----
+    The search starts from the smoothest surface through the measurements and the most photo-consistent depths
+    (a solve of Eq. 8 before the first iteration): the paper does not say from where.
+    """
+    schedule = coupling_schedule(coupling, coupling_decay, iterations)
+    problem = pose_problem(edge_weight, confidence, measurement_weight, prior)
+    auxiliary_depth = candidates[np.argmin(cost_volume, axis=0)]
+    depth = np.full(auxiliary_depth.shape, np.median(auxiliary_depth))
+    residuals, steps = [], []
+    for iteration in range(iterations + 1):
+        if iteration:
+            auxiliary_depth = search_depth(
+                cost_volume,
+                candidates,
+                depth,
+                photometric_weight=photometric_weight,
+                coupling=schedule[iteration - 1],
+                median_size=median_size,
+                newton_rate=newton_rate,
+            )
+        solution = solve_surface(
+            problem,
+            auxiliary_depth,
+            measured_depth,
+            depth,
+            coupling_factor=1 / (2 * schedule[max(iteration - 1, 0)]),
+            smoothness=smoothness_at(max(iteration, 1), smoothness, smoothness_growth),
+            tolerance=tolerance if iteration == iterations else early_tolerance,
+            max_steps=max_steps,
+        )
+        depth = solution.depth
+        residuals.append(solution.residual)
+        steps.append(solution.steps)
+        note(f"iteration {iteration}/{iterations}: {solution.steps} steps, residual {solution.residual:.1e}")
+    return DepthSolution(depth, tuple(residuals), tuple(steps))

@@ -1,0 +1,233 @@
+"""How well each depth map agrees with the others, pixel by pixel."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numba
+import numpy as np
+from numba import njit, prange
+from scipy.ndimage import minimum_filter
+
+from threedfs.types import View
+
+_BLOCK = 8  # depth maps that are compared with each other one read: they and their counts are in memory
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """What the other views say of one depth map.
+
+    Attributes
+    ----------
+    agree : (H, W) uint8
+        Views whose depth surface passes through the pixel's point, and that have none on its ray in front of it.
+    too_near : (H, W) uint8
+        Views that see through the pixel's point to a surface behind it: it lies in their free space.
+    too_far : (H, W) uint8
+        Views with a surface on the pixel's ray in front of its point, which the pixel looks through.
+        A surface of another view behind the point is hidden by it and says nothing.
+    free_depth : (H, W) float32
+        Depth of the nearest such surface, less the tolerance; infinity where there is none.
+    """
+
+    agree: np.ndarray
+    too_near: np.ndarray
+    too_far: np.ndarray
+    free_depth: np.ndarray
+
+    @property
+    def share(self) -> np.ndarray:
+        """Share of agreeing views among those that say anything, (H, W) float64; 0 where none does."""
+        agree = self.agree.astype(np.float64)
+        return agree / np.maximum(agree + self.too_near + self.too_far, 1)
+
+
+@dataclass(frozen=True)
+class ComparisonRule:
+    """How depth maps are compared.
+
+    Attributes
+    ----------
+    tolerance : float
+        Relative difference in depth up to which two surfaces are the same.
+    max_views : int
+        Each map is compared with at most so many others, those whose optical axes are nearest in direction.
+    witness_share : float
+        Share of agreement from which a pixel's surface may speak against other views.
+    """
+
+    tolerance: float
+    max_views: int
+    witness_share: float
+
+
+def check_consistency(
+    views: Sequence[View], read_depth: Callable[[int], np.ndarray], rule: ComparisonRule, threads: int = 1
+) -> Iterator[Agreement]:
+    """Compare every depth map with those of the other views; yield the result of each in order.
+
+    Compares twice: first to learn which surfaces other views confirm, then counting as contradictions only those
+    by such surfaces. Depth without ground, as on a surface without texture, thus speaks against no one.
+
+    At most nine depth maps are held at a time, and one bit per pixel of every map.
+
+    Parameters
+    ----------
+    views : sequence of View
+        All of one image size.
+    read_depth : callable
+        Gives the depth map (H, W), NaN where missing, of a view by its rank.
+    rule : ComparisonRule
+    threads : int
+        Cores used; the result does not depend on it.
+    """
+    shape = views[0].camera.shape if views else (0, 0)
+    first = compare_depth(views, read_depth, lambda _: np.ones(shape, bool), rule, threads)
+    witnesses = [np.packbits(agreement.share >= rule.witness_share) for agreement in first]
+
+    def may_contradict(rank: int) -> np.ndarray:
+        return np.unpackbits(witnesses[rank], count=shape[0] * shape[1]).reshape(shape).astype(bool)
+
+    yield from compare_depth(views, read_depth, may_contradict, rule, threads)
+
+
+def compare_depth(
+    views: Sequence[View],
+    read_depth: Callable[[int], np.ndarray],
+    may_contradict: Callable[[int], np.ndarray],
+    rule: ComparisonRule,
+    threads: int = 1,
+) -> Iterator[Agreement]:
+    """Compare every depth map once with those of the other views; as `check_consistency`.
+
+    Parameters
+    ----------
+    may_contradict : callable
+        Gives, by the rank of a view, the pixels (H, W) bool whose surfaces may speak against others.
+    """
+    numba.set_num_threads(max(1, min(threads, numba.config.NUMBA_NUM_THREADS)))
+    partners = _nearest_views(views, rule.max_views)
+    for start in range(0, len(views), _BLOCK):
+        targets = np.arange(start, min(start + _BLOCK, len(views)))
+        depth = np.stack([read_depth(i) for i in targets]).astype(np.float32)
+        near_depth = np.stack([_local_minimum(item) for item in depth])
+        counts = np.zeros((3, *depth.shape), np.uint8)
+        free = np.full(depth.shape, np.inf, np.float32)
+        for other in sorted(set().union(*(partners[i] for i in targets))):
+            seen = np.asarray(read_depth(other), np.float32)
+            _compare(
+                depth,
+                near_depth,
+                seen,
+                _local_minimum(seen),
+                may_contradict(other),
+                np.stack([_px_from_px(views[other], views[i]) for i in targets]),
+                np.stack([_px_from_px(views[i], views[other]) for i in targets]),
+                np.array([other in partners[i] for i in targets]),
+                rule.tolerance,
+                counts,
+                free,
+            )
+        for slot in range(len(targets)):
+            yield Agreement(counts[0, slot], counts[1, slot], counts[2, slot], free[slot])
+
+
+def rate_confidence(
+    agreement: Agreement, photometric: np.ndarray, *, prior_views: float, full_share: float
+) -> np.ndarray:
+    """Turn the counts of a depth map into trust, (H, W) float32 in [0, 1].
+
+    The share of agreeing views among those that say anything, with the photometric confidence as the opinion
+    of `prior_views` more, reaches trust 1 at `full_share`.
+
+    Parameters
+    ----------
+    agreement : Agreement
+    photometric : (H, W) float in [0, 1]
+        Confidence of the depth map by its own images (3.2, Eq. 11).
+    prior_views : float
+        Weight of the photometric confidence, in views.
+    full_share : float
+        Share of agreement from which a pixel is trusted fully.
+    """
+    agree = agreement.agree.astype(np.float64)
+    heard = agree + agreement.too_near + agreement.too_far
+    share = (agree + prior_views * np.nan_to_num(photometric)) / (heard + prior_views)
+    return np.minimum(1.0, share / full_share).astype(np.float32)
+
+
+def _nearest_views(views: Sequence[View], count: int) -> list[set[int]]:
+    axes = np.stack([view.cam_from_world[2, :3] for view in views])
+    cosines = axes @ axes.T
+    np.fill_diagonal(cosines, -np.inf)
+    order = np.argsort(-cosines, axis=1, kind="stable")[:, : min(count, len(views) - 1)]
+    return [set(row.tolist()) for row in order]
+
+
+def _px_from_px(target: View, source: View) -> np.ndarray:
+    """(3, 4) matrix: depth * (u, v, 1) of the source, and 1, to homogeneous pixels of the target."""
+    rotation = target.cam_from_world[:3, :3] @ source.cam_from_world[:3, :3].T
+    translation = target.cam_from_world[:3, 3] - rotation @ source.cam_from_world[:3, 3]
+    cam_from_px = np.linalg.inv(source.camera.px_from_cam)
+    return target.camera.px_from_cam @ np.column_stack([rotation @ cam_from_px, translation])
+
+
+def _local_minimum(depth: np.ndarray) -> np.ndarray:
+    """Least depth in 3x3: a point beside a silhouette is not in front of the background it is rounded onto."""
+    return minimum_filter(np.where(np.isnan(depth), np.inf, depth), size=3, mode="nearest").astype(np.float32)
+
+
+@njit(cache=True)
+def _transfer(matrix, u, v, depth):
+    a = matrix[0, 0] * u + matrix[0, 1] * v + matrix[0, 2]
+    b = matrix[1, 0] * u + matrix[1, 1] * v + matrix[1, 2]
+    c = matrix[2, 0] * u + matrix[2, 1] * v + matrix[2, 2]
+    z = depth * c + matrix[2, 3]
+    if not z > 0:
+        return np.nan, np.nan, np.nan
+    return (depth * a + matrix[0, 3]) / z, (depth * b + matrix[1, 3]) / z, z
+
+
+@njit(cache=True, parallel=True)
+def _compare(
+    depth, near_depth, other_depth, other_near_depth, other_speaks, there, back, wanted, tolerance, counts, free
+):
+    rows, columns = other_depth.shape
+    for slot in prange(depth.shape[0]):  # a target is the work of one thread, so scattered minima have no race
+        if not wanted[slot]:
+            continue
+        rendered = np.full((rows + 2, columns + 2), np.inf, np.float32)  # the other view's surface, with a border
+        agrees = np.zeros((rows, columns), np.uint8)
+        for row in range(rows):
+            for column in range(columns):
+                u, v, z = _transfer(there[slot], column, row, depth[slot, row, column])
+                if u > -0.5 and v > -0.5 and u < columns - 0.5 and v < rows - 0.5:
+                    other_row, other_column = int(v + 0.5), int(u + 0.5)
+                    seen = other_depth[other_row, other_column]
+                    if abs(z - seen) <= tolerance * z:
+                        agrees[row, column] = 1
+                    elif (
+                        other_speaks[other_row, other_column]
+                        and seen > 0
+                        and z < (1 - tolerance) * other_near_depth[other_row, other_column]
+                    ):
+                        counts[1, slot, row, column] += 1
+                if not other_speaks[row, column]:
+                    continue
+                u, v, z = _transfer(back[slot], column, row, other_depth[row, column])
+                if u > -0.5 and v > -0.5 and u < columns - 0.5 and v < rows - 0.5:
+                    own_row, own_column = int(v + 0.5) + 1, int(u + 0.5) + 1
+                    rendered[own_row, own_column] = min(rendered[own_row, own_column], z)
+        for row in range(rows):
+            for column in range(columns):
+                if not depth[slot, row, column] > 0:
+                    continue
+                # Nearest in 3x3, because points drawn one by one leave gaps.
+                crossing = rendered[row : row + 3, column : column + 3].min()
+                if crossing < (1 - tolerance) * near_depth[slot, row, column]:
+                    counts[2, slot, row, column] += 1
+                    free[slot, row, column] = min(free[slot, row, column], (1 - tolerance) * crossing)
+                else:  # a point that the other view has a surface before agrees with it by chance
+                    counts[0, slot, row, column] += agrees[row, column]

@@ -1,0 +1,46 @@
+"""The region of interest: the box of the world that the scene grid covers."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from threedfs.errors import UserError
+
+
+def scene_region(
+    points: np.ndarray, deviations: float, fixation: np.ndarray, reach: float
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the corners (low, high) of the region of interest (Sec. 3.4.1).
+
+    It reaches `deviations` standard deviations of the points to both sides of their median, axis by axis.
+
+    Differs from the paper: it ends at `reach` from what the cameras look at, because points far behind the object
+    would make it so wide that the object is a few voxels.
+
+    Parameters
+    ----------
+    points : (N, 3) float64, world
+    deviations : float
+    fixation : (3,) float64
+    reach : float
+        Scene units.
+
+    Raises
+    ------
+    UserError
+        If the points span no volume.
+    """
+    if len(points) < 4 or not np.all(points.std(axis=0) > 0):
+        raise UserError(
+            f"The scene has {len(points)} sparse points, which span no volume; expected at least some hundred; "
+            "film a textured scene from several sides."
+        )
+    centre = np.median(points, axis=0)
+    spread = deviations * points.std(axis=0)
+    low, high = np.maximum(centre - spread, fixation - reach), np.minimum(centre + spread, fixation + reach)
+    if not np.all(low < high):
+        raise UserError(
+            "The cameras do not look at where the sparse points are; expected views of one object from around it; "
+            "raise fuse_scene.region_reach or film the object in the middle of the picture."
+        )
+    return low, high

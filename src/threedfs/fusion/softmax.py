@@ -1,0 +1,184 @@
+"""The soft maximum of the views' signed distances, accumulated view by view."""
+
+from __future__ import annotations
+
+import math
+
+import numba
+import numpy as np
+from numba import njit, prange
+
+from threedfs.checks import check_shape
+from threedfs.fusion.view_sdf import clipped_distance, invert_depth, sample_inverse_depth
+from threedfs.types import View, VoxelGrid
+
+UNSEEN = 1.0
+"""Value of voxels that no view sees: not solid, and told from empty ones by `seen` being 0."""
+
+
+class SoftMaximum:
+    """Fuses the signed distances of views into one field on a grid, holding one view at a time.
+
+    Differs from the paper: a vote of confidence c enters Eq. 15 as exp(h (S - distrust (1 - c))), so that a view
+    that others contradict loses against them instead of carving; with every c = 1, or without confidence, it
+    is the paper's.
+
+    Parameters
+    ----------
+    grid : VoxelGrid
+    clip_distance : float
+        Distance from the surface at which votes are clipped, scene units (mu).
+    hardness : float
+        h of Eq. 15: 0 gives the mean, infinity the maximum.
+    distrust : float
+        Handicap of a vote without any confidence, in units of the clipped distance.
+    discontinuity : float
+        Relative step of inverse depth between neighbouring pixels above which they lie on different surfaces.
+    threads : int
+        Cores used; the result does not depend on it.
+    """
+
+    def __init__(
+        self,
+        grid: VoxelGrid,
+        clip_distance: float,
+        hardness: float,
+        *,
+        distrust: float,
+        discontinuity: float,
+        threads: int = 1,
+    ) -> None:
+        self.grid = grid
+        self._weighted = np.zeros(grid.shape)
+        self._weight = np.zeros(grid.shape)
+        self._seen = np.zeros(grid.shape, np.uint8)
+        self._settings = (float(clip_distance), float(hardness), float(discontinuity))
+        self._distrust = distrust
+        self._threads = threads
+
+    def add(
+        self,
+        view: View,
+        depth: np.ndarray,
+        confidence: np.ndarray | None = None,
+        free_depth: np.ndarray | None = None,
+    ) -> None:
+        """Let one view vote on every voxel it sees.
+
+        Voxels behind the camera, outside the image or at a pixel without depth get no vote from it.
+
+        Parameters
+        ----------
+        view : View
+        depth : (H, W) float, NaN where missing
+        confidence : (H, W) float in [0, 1], optional
+            Trust in each pixel; all 1 without one.
+        free_depth : (H, W) float, optional
+            Depth up to which no other view contradicts that the ray is free: votes for empty space well in
+            front of the surface and of this depth count fully, whatever the confidence in the surface.
+
+        Raises
+        ------
+        UserError
+            If a map has not the shape of the view's images.
+        """
+        shape = view.camera.shape
+        maps = {"depth": depth, "confidence": confidence, "free depth": free_depth}
+        for name, values in maps.items():
+            if values is not None:
+                check_shape(values, shape, f"{name} of view {view.name}")
+        hardness = self._settings[1]
+        weight = np.ones(shape) if confidence is None else np.exp(-hardness * self._distrust * (1.0 - confidence))
+        free = np.zeros(shape, np.float32) if free_depth is None else free_depth.astype(np.float32)
+        camera = view.camera
+        numba.set_num_threads(max(1, min(self._threads, numba.config.NUMBA_NUM_THREADS)))
+        _add_view(
+            self._weighted,
+            self._weight,
+            self._seen,
+            np.asarray(self.grid.origin, np.float64),
+            float(self.grid.spacing),
+            view.px_from_world,
+            np.array([camera.fx, camera.fy, camera.cx, camera.cy]),
+            invert_depth(depth),
+            weight.astype(np.float64),
+            free,
+            *self._settings,
+        )
+
+    def result(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the fused field and what is known of each voxel.
+
+        Returns
+        -------
+        sdf : (nx, ny, nz) float32
+            In [-1, 1], positive in empty space, `UNSEEN` where no view votes (3.3.1, Eq. 15).
+        seen : (nx, ny, nz) uint8
+            Number of views that vote, at most 255.
+        """
+        sdf = np.full(self.grid.shape, UNSEEN, np.float32)
+        np.divide(self._weighted, self._weight, out=sdf, where=self._seen > 0, casting="same_kind")
+        return sdf, self._seen
+
+
+def estimate_fusion_memory(grid_shape: tuple[int, int, int], image_shape: tuple[int, int]) -> int:
+    """Estimate the bytes that fusion needs: two sums, the field and the count per voxel; the maps of one view.
+
+    Examples
+    --------
+    >>> estimate_fusion_memory((200, 200, 200), (480, 640)) // 10**6
+    183
+    """
+    bytes_per_voxel = 8 + 8 + 4 + 1
+    bytes_per_pixel = 8 * 6
+    return math.prod(grid_shape) * bytes_per_voxel + math.prod(image_shape) * bytes_per_pixel
+
+
+@njit(cache=True, parallel=True)
+def _add_view(
+    weighted,
+    weight,
+    seen,
+    origin,
+    spacing,
+    px_from_world,
+    intrinsics,
+    inverse_depth,
+    pixel_weight,
+    free_depth,
+    clip_distance,
+    hardness,
+    discontinuity,
+):
+    fx, fy, cx, cy = intrinsics[0], intrinsics[1], intrinsics[2], intrinsics[3]
+    p = px_from_world
+    clipped_weight = math.exp(-2.0 * hardness)
+    nx, ny, nz = seen.shape
+    for ix in prange(nx):
+        x = origin[0] + spacing * ix
+        for iy in range(ny):
+            y = origin[1] + spacing * iy
+            for iz in range(nz):
+                z = origin[2] + spacing * iz
+                voxel_depth = p[2, 0] * x + p[2, 1] * y + p[2, 2] * z + p[2, 3]
+                if voxel_depth <= 0:
+                    continue
+                u = (p[0, 0] * x + p[0, 1] * y + p[0, 2] * z + p[0, 3]) / voxel_depth
+                v = (p[1, 0] * x + p[1, 1] * y + p[1, 2] * z + p[1, 3]) / voxel_depth
+                inverse = sample_inverse_depth(inverse_depth, u, v, discontinuity)
+                if math.isnan(inverse):
+                    continue
+                ray_length = math.sqrt(((u - cx) / fx) ** 2 + ((v - cy) / fy) ** 2 + 1.0)
+                distance = clipped_distance(1.0 / inverse, voxel_depth, ray_length, clip_distance)
+                row, column = int(v + 0.5), int(u + 0.5)
+                # The exponent is shifted by h so that it never grows above 0; the ratio stays the same.
+                if distance >= 1.0:
+                    vote = 1.0 if voxel_depth <= free_depth[row, column] else pixel_weight[row, column]
+                elif distance <= -1.0:
+                    vote = clipped_weight * pixel_weight[row, column]
+                else:
+                    vote = math.exp(hardness * (distance - 1.0)) * pixel_weight[row, column]
+                weighted[ix, iy, iz] += vote * distance
+                weight[ix, iy, iz] += vote
+                if seen[ix, iy, iz] < 255:
+                    seen[ix, iy, iz] += 1

@@ -1,0 +1,169 @@
+"""The surface that the object stands on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from threedfs.errors import UserError
+from threedfs.geometry.plane import fit_plane, propose_planes, score_planes
+from threedfs.types import Plane
+
+_FACING = np.cos(np.radians(45))  # a point lies on a plane if its normal is so near the plane's
+_SAMPLE = 4000  # surface points on which candidate planes are compared
+
+
+@dataclass(frozen=True)
+class SupportRule:
+    """What makes a plane the support.
+
+    Attributes
+    ----------
+    tolerance : float
+        Distance up to which a surface point lies on a plane, scene units; doubled while no plane is found.
+    doublings : int
+        Times it may be doubled: the fused surface of a floor without texture is rough.
+    reach : float
+        Standard deviation of the weight of surface points around the fixation point, scene units: a wall of the
+        room may be larger than the table, but it is not near what all views look at.
+    max_tilt : float
+        Largest angle between the support's normal and the cameras' mean upward direction, degrees.
+    min_share : float
+        Least share of the upward-facing surface, weighted by its nearness, that lies on the plane.
+    candidates : int
+        Planes tried.
+    """
+
+    tolerance: float
+    doublings: int
+    reach: float
+    max_tilt: float
+    min_share: float
+    candidates: int
+
+
+@dataclass(frozen=True)
+class SupportPlane:
+    """The support found.
+
+    Attributes
+    ----------
+    plane : Plane
+    share : float
+        Share of the upward-facing surface, weighted by its nearness, that lies on it.
+    noise : float
+        Robust standard deviation of that surface from the plane, scene units.
+    extent : float
+        Mean over the three axes of the standard deviation of the points on the plane, scene units (Sec. 3.4.1).
+    """
+
+    plane: Plane
+    share: float
+    noise: float
+    extent: float
+
+
+def find_support(
+    points: np.ndarray,
+    normals: np.ndarray,
+    centres: np.ndarray,
+    fixation: np.ndarray,
+    up: np.ndarray,
+    rule: SupportRule,
+    generator: np.random.Generator,
+) -> SupportPlane:
+    """Find the plane under the object among points of the fused surface.
+
+    Candidates are planes through three upward-facing points. Each scores by the nearby surface that lies on it
+    and faces its way, times the cosine between its normal and `up`, less the nearby surface that lies below it:
+    a table's top has nothing below, a box's top has the table. Cameras must be on its positive side.
+
+    Differs from the paper: Sec. 3.4.1 fits one plane to all points of the zero level surface, which takes a
+    wall, or a compromise, where the floor is not the largest surface.
+
+    Parameters
+    ----------
+    points, normals : (N, 3) float64
+        Of the zero level surface, normals toward empty space.
+    centres : (K, 3) float64
+        Camera centres.
+    fixation, up : (3,) float64
+    rule : SupportRule
+    generator : numpy.random.Generator
+
+    Raises
+    ------
+    UserError
+        If no plane reaches `rule.min_share`.
+    """
+    weights = np.exp(-((points - fixation) ** 2).sum(axis=1) / (2 * rule.reach**2))
+    upward = normals @ up > np.cos(np.radians(rule.max_tilt))
+    if not (weights * upward).sum() > 0:
+        raise UserError(_explain(0.0, rule))
+    best = 0.0
+    for doubling in range(rule.doublings + 1):
+        tolerance = rule.tolerance * 2**doubling
+        plane = _search(points, normals, weights, centres, up, tolerance, rule, generator)
+        if plane is None:
+            continue
+        on = _lies_on(plane, points, normals, tolerance)
+        share = float((weights * on).sum() / (weights * upward).sum())
+        best = max(best, share)
+        if share >= rule.min_share:
+            noise = 1.4826 * float(np.median(np.abs(plane.distance(points[on]))))
+            return SupportPlane(plane, share, noise, float(points[on].std(axis=0).mean()))
+    raise UserError(_explain(best, rule))
+
+
+def _search(
+    points: np.ndarray,
+    normals: np.ndarray,
+    weights: np.ndarray,
+    centres: np.ndarray,
+    up: np.ndarray,
+    tolerance: float,
+    rule: SupportRule,
+    generator: np.random.Generator,
+) -> Plane | None:
+    """Return the best plane at one tolerance, fitted to all points that lie on it; None where there is none."""
+    least_cosine = np.cos(np.radians(rule.max_tilt))
+    chosen = generator.choice(len(points), size=_SAMPLE, p=weights / weights.sum())
+    sample, sample_normals = points[chosen], normals[chosen]
+
+    def score(candidates: np.ndarray, distances: np.ndarray) -> np.ndarray:
+        facing = candidates @ sample_normals.T > _FACING
+        on = np.clip(1 - (distances / tolerance) ** 2, 0, None) * facing
+        below = distances < -2 * tolerance
+        return (candidates @ up) * on.sum(axis=1) - below.sum(axis=1)
+
+    probabilities = weights * (normals @ up > least_cosine)
+    drawn, offsets = propose_planes(points, probabilities / probabilities.sum(), rule.candidates, generator)
+    sign = np.where(drawn @ up < 0, -1.0, 1.0)
+    drawn, offsets = drawn * sign[:, None], offsets * sign
+    allowed = drawn @ up > least_cosine
+    allowed &= np.mean(centres @ drawn.T + offsets > tolerance, axis=0) > 0.9
+    drawn, offsets = drawn[allowed], offsets[allowed]
+    if len(drawn) == 0:
+        return None
+    best = int(np.argmax(score_planes(drawn, offsets, sample, score)))
+    plane = Plane(drawn[best], float(offsets[best]))
+    for _ in range(5):
+        on = _lies_on(plane, points, normals, tolerance)
+        if on.sum() < 3:
+            return None
+        fitted = fit_plane(points[on], weights[on])
+        plane = fitted if fitted.normal @ up > 0 else Plane(-fitted.normal, -fitted.offset)
+    return plane if plane.normal @ up > least_cosine else None
+
+
+def _lies_on(plane: Plane, points: np.ndarray, normals: np.ndarray, tolerance: float) -> np.ndarray:
+    return (np.abs(plane.distance(points)) < tolerance) & (normals @ plane.normal > _FACING)
+
+
+def _explain(share: float, rule: SupportRule) -> str:
+    return (
+        f"No support plane was found: expected a flat surface under the object with at least {rule.min_share:.0%} of "
+        f"the upward-facing surface on it, the best has {share:.0%}; film the object on a flat, textured surface that "
+        "stays in the picture, from above it, or raise locate.plane_tolerance."
+    )

@@ -1,0 +1,53 @@
+"""The clipped signed distance of voxels from the depth surface of one view."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+from numba import njit
+
+
+def invert_depth(depth: np.ndarray) -> np.ndarray:
+    """Return the inverse depth, (H, W) float32, NaN where the depth is not a positive finite number.
+
+    Between pixels of a plane inverse depth is linear, depth is not: interpolation is exact there.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(np.isfinite(depth) & (depth > 0), 1 / depth, np.nan).astype(np.float32)
+
+
+@njit(cache=True)
+def sample_inverse_depth(inverse_depth, u, v, discontinuity):
+    """Return the inverse depth at a point (u, v) of the image, NaN outside it or where it is missing.
+
+    Bilinear where the four pixels around lie on one surface, that is, where they spread over at most
+    `discontinuity` times the nearest one's value; the nearest pixel's value across a depth discontinuity,
+    where a mean would be a surface that does not exist.
+    """
+    rows, columns = inverse_depth.shape
+    if not (u >= 0 and v >= 0 and u <= columns - 1 and v <= rows - 1):
+        return np.nan
+    nearest = inverse_depth[int(v + 0.5), int(u + 0.5)]
+    if math.isnan(nearest):
+        return np.nan
+    column, row = min(int(u), columns - 2), min(int(v), rows - 2)
+    right, down = u - column, v - row
+    a, b = inverse_depth[row, column], inverse_depth[row, column + 1]
+    c, d = inverse_depth[row + 1, column], inverse_depth[row + 1, column + 1]
+    total = a + b + c + d
+    if math.isnan(total) or max(a, b, c, d) - min(a, b, c, d) > discontinuity * nearest:
+        return nearest
+    return (1 - down) * ((1 - right) * a + right * b) + down * ((1 - right) * c + right * d)
+
+
+@njit(cache=True)
+def clipped_distance(surface_depth, voxel_depth, ray_length, clip_distance):
+    """Return the signed distance of a voxel from the depth surface along the ray, clipped to [-1, 1] (3.3.1, Eq. 14).
+
+    The voxel and the point where its ray meets the surface differ by a multiple of that ray, so the norm of
+    their difference is the difference in depth times the length of the ray at depth 1. The sign of that
+    difference in depth is the sign of the result: positive in front of the surface.
+    """
+    distance = (surface_depth - voxel_depth) * ray_length / clip_distance
+    return min(1.0, max(-1.0, distance))

@@ -1,0 +1,180 @@
+"""Cameras that a user gives, in any of four formats, told apart by what is in them.
+
+- a COLMAP model: a folder with cameras and images as .bin or .txt (or with sparse/0 or sparse in it);
+- transforms.json: entries with `transform_matrix`, camera to world with OpenGL axes (x right, y up, z backward);
+- cameras.json: entries with `cam_to_world`, OpenCV axes (x right, y down, z forward);
+- a folder of text files: the word CONTOUR, then a 3x4 matrix P with homogeneous pixel = P X.
+
+The first three put the centre of the first pixel at (0.5, 0.5), the last at (0, 0).
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from threedfs.checks import check_transform
+from threedfs.errors import UserError
+from threedfs.geometry.lens import Lens
+from threedfs.geometry.projection_matrix import decompose_projection
+from threedfs.geometry.rigid import invert, make_transform
+from threedfs.types import Camera
+
+_FORMATS = "a COLMAP model folder, transforms.json, cameras.json or a folder of CONTOUR matrices"
+_OPENCV_FROM_OPENGL = np.diag([1.0, -1.0, -1.0, 1.0])
+
+
+@dataclass(frozen=True)
+class GivenCamera:
+    """One camera from a file, with or without an image of it.
+
+    Attributes
+    ----------
+    name : str
+        Stem of its image.
+    video_frame : int or None
+        Index of the video frame, where the file tells it.
+    lens : Lens
+        Intrinsics and distortion, integer pixel centres. Its camera's width and height are 0 where the format does
+        not state the size of the image: then it is that of the source.
+    cam_from_world : (4, 4) float64
+    """
+
+    name: str
+    video_frame: int | None
+    lens: Lens
+    cam_from_world: np.ndarray
+
+
+def read_given_cameras(path: Path) -> tuple[GivenCamera, ...]:
+    """Read cameras in the order of their file (a folder: of the names).
+
+    Raises
+    ------
+    UserError
+        If nothing is there, the format is unknown, or a camera is not usable.
+    """
+    path = Path(path)
+    if not path.exists():
+        raise UserError(f"{path}: expected given cameras ({_FORMATS}), found nothing; check the path.")
+    if path.is_file():
+        cameras = _read_json(path)
+    else:
+        cameras = _read_folder(path)
+    if not cameras:
+        raise UserError(f"{path}: expected at least one camera, got none; check the file.")
+    return tuple(cameras)
+
+
+def _read_folder(path: Path) -> list[GivenCamera]:
+    for folder in (path, path / "sparse" / "0", path / "sparse"):
+        if any((folder / f"images{ending}").is_file() for ending in (".bin", ".txt")):
+            return _read_colmap(folder)
+    for name in ("transforms.json", "cameras.json"):
+        if (path / name).is_file():
+            return _read_json(path / name)
+    matrices = [file for file in sorted(path.glob("*.txt")) if file.read_text(errors="replace").startswith("CONTOUR")]
+    if matrices:
+        return [_read_contour(file) for file in matrices]
+    raise UserError(f"{path}: expected {_FORMATS}, found none of them in this folder; check the path.")
+
+
+def _read_colmap(folder: Path) -> list[GivenCamera]:
+    # Imported here so that the other formats do without COLMAP.
+    from threedfs.colmap.model_files import read_posed_images
+
+    try:
+        images = read_posed_images(folder)
+    except ValueError as fault:
+        raise UserError(
+            f"{folder}: expected a COLMAP model with radial distortion at most, got {fault}; "
+            "undistort the images with COLMAP and give that model."
+        ) from fault
+    return [GivenCamera(Path(name).stem, None, lens, pose) for name, lens, pose in images]
+
+
+def _read_json(path: Path) -> list[GivenCamera]:
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+        entries = content["frames"]
+        return [_read_entry(path, content, entry) for entry in entries]
+    except (UnicodeDecodeError, json.JSONDecodeError, TypeError, ValueError, KeyError) as fault:
+        raise UserError(
+            f"{path}: expected {_FORMATS}, got a file without what cameras need "
+            f"({type(fault).__name__}: {fault}); check the file."
+        ) from fault
+
+
+def _read_entry(path: Path, content: Mapping[str, Any], entry: Mapping[str, Any]) -> GivenCamera:
+    shared = {**content, **entry}
+    if "transform_matrix" in entry:
+        name = Path(entry["file_path"]).stem
+        pose = np.array(entry["transform_matrix"], np.float64)
+        world_from_cam = check_transform(pose, f"{path}: {name}") @ _OPENCV_FROM_OPENGL
+        lens = _read_nerf_lens(path, shared)
+    else:
+        name = str(entry["name"])
+        world_from_cam = check_transform(np.array(entry["cam_to_world"]), f"{path}: {name}")
+        lens = Lens(
+            Camera(
+                int(shared["width"]),
+                int(shared["height"]),
+                float(shared["fx"]),
+                float(shared["fy"]),
+                float(shared["cx"]) - 0.5,
+                float(shared["cy"]) - 0.5,
+            ),
+            float(shared.get("k1", 0.0)),
+            float(shared.get("k2", 0.0)),
+        )
+    index = entry.get("video_frame")
+    return GivenCamera(name, None if index is None else int(index), lens, _rigid_inverse(world_from_cam))
+
+
+def _read_nerf_lens(path: Path, shared: Mapping[str, Any]) -> Lens:
+    if any(abs(float(shared.get(term, 0.0))) > 0 for term in ("p1", "p2", "k3", "k4")):
+        raise UserError(
+            f"{path}: expected no distortion but k1 and k2, got p1, p2, k3 or k4 other than 0; undistort the images."
+        )
+    width, height = int(shared["w"]), int(shared["h"])
+    if "fl_x" in shared:
+        focal_x = float(shared["fl_x"])
+    else:
+        focal_x = 0.5 * width / np.tan(0.5 * float(shared["camera_angle_x"]))
+    camera = Camera(
+        width,
+        height,
+        float(focal_x),
+        float(shared.get("fl_y", focal_x)),
+        float(shared.get("cx", width / 2)) - 0.5,
+        float(shared.get("cy", height / 2)) - 0.5,
+    )
+    return Lens(camera, float(shared.get("k1", 0.0)), float(shared.get("k2", 0.0)))
+
+
+def _read_contour(path: Path) -> GivenCamera:
+    try:
+        projection = np.array(path.read_text().split()[1:], np.float64).reshape(3, 4)
+        intrinsics, cam_from_world = decompose_projection(projection)
+    except ValueError as fault:
+        raise UserError(f"{path}: expected CONTOUR and the 12 numbers of a projection, got {fault}.") from fault
+    camera = Camera(
+        0,
+        0,
+        float(intrinsics[0, 0]),
+        float(intrinsics[1, 1]),
+        float(intrinsics[0, 2]),
+        float(intrinsics[1, 2]),
+    )
+    return GivenCamera(path.stem, None, Lens(camera), cam_from_world)
+
+
+def _rigid_inverse(world_from_cam: np.ndarray) -> np.ndarray:
+    # Printed digits leave a rotation that is orthogonal only to about 1e-9: take the nearest one.
+    u, _, vt = np.linalg.svd(world_from_cam[:3, :3])
+    return invert(make_transform(u @ vt, world_from_cam[:3, 3]))

@@ -1,0 +1,60 @@
+"""The closed surface of a field."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from skimage.measure import marching_cubes
+
+from threedfs.errors import UserError
+from threedfs.types import Mesh, VoxelGrid
+
+_LEAST = 1e-3  # the field keeps so far from zero at voxels, or triangles shrink to nothing there
+
+
+def extract_surface(sdf: np.ndarray, grid: VoxelGrid) -> Mesh:
+    """Extract the zero level surface as one closed mesh with normals toward positive values.
+
+    Where the interior reaches the border of the grid, the surface closes there. Of several shells (cavities
+    inside, specks outside) the one that encloses the largest volume is kept.
+
+    Parameters
+    ----------
+    sdf : (nx, ny, nz) float32, negative inside
+    grid : VoxelGrid
+
+    Raises
+    ------
+    UserError
+        If the field is negative nowhere.
+    """
+    if not (sdf < 0).any():
+        raise UserError("The object's field is positive everywhere, so it has no surface; lower object.clearance.")
+    away = np.where(sdf < 0, np.minimum(sdf, -_LEAST), np.maximum(sdf, _LEAST))
+    padded = np.pad(away, 1, constant_values=1)
+    vertices, faces, _, _ = marching_cubes(padded, 0.0, gradient_direction="ascent")
+    vertices = grid.origin + grid.spacing * (vertices.astype(np.float64) - 1)
+    faces = faces.astype(np.int64)
+    if enclosed_volume(Mesh(vertices, faces)) < 0:
+        faces = faces[:, ::-1]
+    return _largest_shell(Mesh(vertices, faces))
+
+
+def enclosed_volume(mesh: Mesh) -> float:
+    """Return the volume that a closed mesh encloses, positive where its faces turn outward."""
+    a, b, c = (mesh.vertices[mesh.faces[:, corner]] - mesh.vertices.mean(axis=0) for corner in range(3))
+    return float((np.cross(a, b) * c).sum() / 6)
+
+
+def _largest_shell(mesh: Mesh) -> Mesh:
+    edges = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]]])
+    count = len(mesh.vertices)
+    graph = coo_array((np.ones(len(edges), bool), (edges[:, 0], edges[:, 1])), shape=(count, count))
+    shells, shell_of_vertex = connected_components(graph, directed=False)
+    shell_of_face = shell_of_vertex[mesh.faces[:, 0]]
+    volumes = [enclosed_volume(Mesh(mesh.vertices, mesh.faces[shell_of_face == shell])) for shell in range(shells)]
+    best = int(np.argmax(volumes))
+    kept = shell_of_vertex == best
+    renumbered = np.cumsum(kept) - 1
+    return Mesh(mesh.vertices[kept], renumbered[mesh.faces[shell_of_face == best]])

@@ -1,0 +1,113 @@
+"""Parameters of the dense depth of a keyframe (Section 3.2)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from threedfs.params.field import parameter
+
+
+@dataclass(frozen=True)
+class DepthParams:
+    """What a user may set about dense depth."""
+
+    prior: str = parameter(
+        "rotation_invariant",
+        "smoothness prior: squared gradient, squared second derivatives, or these with the cross term",
+        equation="Eq. 3",
+        choices=("first_order", "second_order", "rotation_invariant"),
+    )
+    candidates: int = parameter(64, "discrete depths of the cost volume", symbol="l", minimum=8, maximum=512)
+    spacing: str = parameter(
+        "inverse",
+        "how candidates are spaced: the paper's fifth power, uniform in inverse depth, or geometric",
+        equation="Section 4.2",
+        choices=("power", "inverse", "log"),
+    )
+    patch_radius: int = parameter(1, "patches are (2 radius + 1)^2 pixels", unit="px", minimum=1, maximum=7)
+    variance_floor: float = parameter(
+        2.0,
+        "added to the variance of each patch: what noise alone would give (paper: none)",
+        unit="grey levels^2",
+        minimum=0,
+    )
+    missing_cost: float = parameter(
+        0.5,
+        "photometric error charged for a neighbour that does not see the patch",
+        equation="Eq. 1",
+        minimum=0,
+        maximum=1,
+    )
+    iterations: int = parameter(10, "rounds of search and smoothing", minimum=1, maximum=33)
+    photometric_weight: float = parameter(
+        100.0, "weight of the photometric error in the search", symbol="lambda_c", equation="Eq. 6", exclusive_minimum=0
+    )
+    coupling: float = parameter(
+        1.0,
+        "coupling before the first iteration; smaller couples more",
+        symbol="theta^(0)",
+        equation="Eq. 10",
+        exclusive_minimum=0,
+    )
+    coupling_decay: float = parameter(
+        0.08,
+        "how fast coupling tightens; decay times iterations must stay below 1",
+        symbol="beta",
+        equation="Eq. 10",
+        minimum=0,
+        maximum=1,
+    )
+    median_size: int = parameter(
+        3, "side of the median filter after the search, 1 for none", unit="px", minimum=1, maximum=5
+    )
+    newton_rate: float = parameter(
+        1.0,
+        "learning rate of the Newton step after it (paper: 0.01)",
+        symbol="eta",
+        equation="Eq. 7",
+        minimum=0,
+        maximum=1,
+    )
+    measurement_weight: float = parameter(
+        0.1,
+        "weight of a measurement times its inverse-depth variance",
+        symbol="lambda_m",
+        equation="Section 3.2, item i",
+        minimum=0,
+    )
+    smoothness: float = parameter(
+        1.0,
+        "smoothness weight of the first iteration (paper: 0.01)",
+        symbol="lambda_s^(0)",
+        equation="Eq. 9",
+        exclusive_minimum=0,
+    )
+    smoothness_growth: float = parameter(
+        2.2, "its factor from one iteration to the next", symbol="gamma", equation="Eq. 9", minimum=1
+    )
+    edge_falloff: float = parameter(
+        1.0, "how much an image edge weakens smoothing (paper: 5)", symbol="c_edge", equation="Eq. 9", minimum=0
+    )
+    confidence_falloff: float = parameter(
+        20.0,
+        "how fast trust falls with the least photometric error (paper: 5)",
+        symbol="c_conf",
+        equation="Eq. 11",
+        minimum=0,
+    )
+    texture_half_variance: float = parameter(
+        10.0,
+        "patch variance at which trust is halved; 0 trusts flat patches as others (paper)",
+        unit="grey levels^2",
+        minimum=0,
+    )
+    tolerance: float = parameter(
+        1e-6, "relative error, in energy norm, at which the last linear solve stops", exclusive_minimum=0, maximum=1e-2
+    )
+    early_tolerance: float = parameter(
+        1e-4,
+        "the same for the linear solves before it, whose surface is only searched around",
+        exclusive_minimum=0,
+        maximum=1e-2,
+    )
+    max_steps: int = parameter(100, "most steps of one linear solve", minimum=1)

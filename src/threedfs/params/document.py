@@ -1,0 +1,166 @@
+"""Write config/config.yaml, its schema and its documentation from the declared parameters.
+
+Run as ``python -m threedfs.params.document`` in the project's folder (``make config``).
+"""
+
+from __future__ import annotations
+
+import json
+import textwrap
+from dataclasses import Field, fields
+from pathlib import Path
+from typing import Any
+
+from threedfs.params.configuration import configuration_schema
+from threedfs.params.schema import declared_stages, default_settings, stage_schema
+
+GENERAL = """\
+# Every parameter with its default; config/README.md tells what each means. Made by `make config`.
+# Change values in a file of your own, given with --configfile: what it names takes the place of what is here.
+
+# Name of the set of sequences, a column of results/metrics.csv.
+dataset: sample
+
+# One video or folder of photos to reconstruct instead of the sequences below: --config video=path/to/my.mp4
+video: null
+
+# Sequences by name; without any, the sample that ships with the project. Relative paths count from where you run.
+#   mug:
+#     source: videos/mug.mp4        # a video or a folder of photos
+#     cameras: null                 # given cameras, instead of structure from motion
+#     calibration: null             # photos or a video of a checkerboard
+#     truth: {masks: null, cameras: null, mesh: null, depth: null}
+sequences: {}
+
+# How the object is cut out of the fused volume.
+methods: [fused_sdf]
+
+# Of every random choice.
+seed: 0
+
+# Finished work, shared by all sequences; may be outside of results/, and shared by several checkouts.
+store: results/.store
+"""
+
+_INTRODUCTION = """\
+# Configuration
+
+`config.yaml` holds every parameter with its default. Give your own values in a file of your own:
+
+    snakemake --cores 2 --configfile my.yaml
+
+What the file names takes the place of the default, everything else stays. `presets/paper.yaml` has the constants of
+the paper; a file of sequences and a preset can be given together: `--configfile config/presets/paper.yaml my.yaml`.
+One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`.
+
+An unknown key, a wrong type or a value out of range stops the run before it starts, with a sentence.
+
+## Sequences
+
+{keys}
+Paths count from the folder in which `snakemake` runs. A sequence's name is a folder's name: letters, digits, dots,
+dashes, underscores.
+
+## Parameters
+
+Symbol and equation are those of the paper, equations counted in the order of its source.
+"""
+
+_KEYS = {
+    "dataset": "name of the set, a column of `results/metrics.csv`",
+    "video": "one video or folder of photos; the sequence gets the file's name",
+    "sequences.<name>.source": "a video (mp4, mov) or a folder of photos",
+    "sequences.<name>.cameras": "given cameras: a COLMAP model folder, `transforms.json`, `cameras.json` with "
+    "`cam_to_world`, or a folder of CONTOUR projection matrices; null: structure from motion",
+    "sequences.<name>.calibration": "photos or a video of a checkerboard; null: the camera calibrates itself",
+    "sequences.<name>.truth.masks": "folder of masks named like the frames (white: object), to measure against; "
+    "their frames become keyframes",
+    "sequences.<name>.truth.cameras": "reference cameras, to measure against",
+    "sequences.<name>.truth.mesh": "reference mesh, in the frame of the reference cameras",
+    "sequences.<name>.truth.depth": "folder of reference depth maps",
+    "methods": "how the object is cut out: `fused_sdf`",
+    "seed": "of every random choice",
+    "store": "folder of finished work",
+}
+
+
+def make_defaults() -> str:
+    """Return the text of config.yaml."""
+    parts = [GENERAL]
+    for stage, declared in declared_stages().items():
+        lines = [f"\n{stage}:"]
+        for field in fields(declared):
+            unit = f" [{field.metadata['unit']}]" if field.metadata["unit"] else ""
+            lines += [
+                f"  # {line}" for line in textwrap.wrap(field.metadata["meaning"] + unit, 110, break_long_words=False)
+            ]
+            lines.append(f"  {field.name}: {_yaml(default_settings(declared)[field.name])}")
+        parts.append("\n".join(lines) + "\n")
+    return "".join(parts)
+
+
+def make_documentation() -> str:
+    """Return the text of config/README.md."""
+    keys = [f"| `{key}` | {meaning} |" for key, meaning in _KEYS.items()]
+    parts = [_INTRODUCTION.replace("{keys}", "\n".join(["| key | meaning |", "|---|---|", *keys, ""]))]
+    for stage, declared in declared_stages().items():
+        parts.append(f"\n### {stage}\n\n{(declared.__doc__ or '').strip().splitlines()[0]}\n\n")
+        parts.append("| key | default | meaning | unit | range | symbol | equation |\n|---|---|---|---|---|---|---|\n")
+        parts += [_row(field, stage_schema(declared)["properties"][field.name]) for field in fields(declared)]
+    return "".join(parts)
+
+
+def make_schema() -> str:
+    """Return the text of workflow/schemas/config.schema.yaml; JSON, which is YAML too."""
+    return json.dumps(configuration_schema(), indent=2) + "\n"
+
+
+FILES = {
+    "config/config.yaml": make_defaults,
+    "config/README.md": make_documentation,
+    "workflow/schemas/config.schema.yaml": make_schema,
+}
+
+
+def main() -> None:
+    """Write the three files below the working directory."""
+    for name, make in FILES.items():
+        Path(name).write_text(make(), encoding="utf-8")
+
+
+def _row(field: Field, schema: dict[str, Any]) -> str:
+    note = field.metadata
+    cells = [
+        f"`{field.name}`",
+        f"`{_yaml(list(field.default) if isinstance(field.default, tuple) else field.default)}`",
+        note["meaning"],
+        note["unit"],
+        _range(schema.get("items", schema)),
+        note["symbol"],
+        note["equation"],
+    ]
+    return "| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |\n"
+
+
+def _range(schema: dict[str, Any]) -> str:
+    if "enum" in schema:
+        return ", ".join(f"`{_yaml(choice)}`" for choice in schema["enum"])
+    limits = [f">= {schema['minimum']}"] if "minimum" in schema else []
+    limits += [f"> {schema['exclusiveMinimum']}"] if "exclusiveMinimum" in schema else []
+    limits += [f"<= {schema['maximum']}"] if "maximum" in schema else []
+    return ", ".join(limits)
+
+
+def _yaml(value: Any) -> str:
+    """Write a plain value as YAML; words without quotes."""
+    if isinstance(value, list):
+        return "[" + ", ".join(_yaml(item) for item in value) + "]"
+    if isinstance(value, float):
+        # YAML 1.1 reads 1e-06 as text unless the mantissa has a point
+        text = repr(value)
+        return text.replace("e", ".0e") if "e" in text and "." not in text else text
+    return value if isinstance(value, str) and value.isidentifier() else json.dumps(value)
+
+
+if __name__ == "__main__":
+    main()

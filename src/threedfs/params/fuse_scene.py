@@ -1,0 +1,27 @@
+"""Parameters of the fuse_scene stage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from threedfs.params.field import parameter
+from threedfs.params.fusion import FusionSettings
+
+
+@dataclass(frozen=True)
+class FuseSceneParams(FusionSettings):
+    """How the scene is fused to find the support plane and the object."""
+
+    region_deviations: float = parameter(
+        2.0,
+        "half the side of the region of interest along each axis, around the median of the points",
+        unit="standard deviation of the points",
+        equation="Sec. 3.4.1",
+        exclusive_minimum=0.0,
+    )
+    region_reach: float = parameter(
+        1.0,
+        "the region of interest ends at this distance from what the cameras look at",
+        unit="viewing distance",
+        exclusive_minimum=0.0,
+    )

@@ -1,0 +1,44 @@
+"""Parameters that both fusions have: the scene's and the object's."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from threedfs.params.field import parameter
+
+
+@dataclass(frozen=True)
+class FusionSettings:
+    """How depth maps become one signed distance field."""
+
+    longest_side: int = parameter(
+        200, "voxels along the longest side of the grid", unit="voxel", equation="Sec. 3.4.1", minimum=8, maximum=800
+    )
+    clip_distance: float = parameter(
+        4.0,
+        "distance from the surface at which a view's signed distance is clipped to 1",
+        unit="voxel",
+        symbol="mu",
+        equation="Eq. 14",
+        exclusive_minimum=0.0,
+    )
+    softmax_hardness: float = parameter(
+        10.0, "0 makes the soft maximum over views a mean", symbol="h", equation="Eq. 15", minimum=0.0, maximum=100.0
+    )
+    weighting: str = parameter(
+        "consistency",
+        "what a view's vote counts: the same everywhere, as in the paper, or by its agreement with other views",
+        choices=("plain", "consistency"),
+    )
+    distrust: float = parameter(
+        4.0,
+        "handicap in the soft maximum of a vote that no other view agrees with; acts with weighting: consistency",
+        unit="clip distance",
+        minimum=0.0,
+        maximum=5.0,
+    )
+    depth_discontinuity: float = parameter(
+        0.02,
+        "relative step of inverse depth between neighbouring pixels across which depth is not interpolated",
+        minimum=0.0,
+    )

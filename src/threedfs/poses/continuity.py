@@ -1,0 +1,58 @@
+"""Continuity of a video's camera path: a path that repeated artwork has folded jumps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def camera_centres(cam_from_world: np.ndarray) -> np.ndarray:
+    """Return the centres (N, 3) of poses (N, 4, 4), world."""
+    return -np.einsum("nij,ni->nj", cam_from_world[:, :3, :3], cam_from_world[:, :3, 3])
+
+
+def step_ratio(times: np.ndarray, cam_from_world: np.ndarray, spacing: float) -> float:
+    """Return the largest over the median step of the path at equal time spacing.
+
+    Parameters
+    ----------
+    times : (N,) float64
+        Seconds, ascending.
+    cam_from_world : (N, 4, 4) float64
+        In order of time.
+    spacing : float
+        Seconds between two samples of the path; at least the median spacing of `times`.
+
+    Returns
+    -------
+    float
+        1 for uniform motion; infinite if the camera rests more than half of the time and moves in between;
+        NaN with fewer than three samples.
+    """
+    if len(times) < 3:
+        return float("nan")
+    centres = camera_centres(cam_from_world)
+    spacing = max(spacing, float(np.median(np.diff(times))))
+    count = int(np.floor((times[-1] - times[0]) / spacing + 1e-6))
+    samples = times[0] + spacing * np.arange(count + 1)
+    path = np.stack([np.interp(samples, times, centres[:, axis]) for axis in range(3)], axis=1)
+    steps = np.linalg.norm(np.diff(path, axis=0), axis=1)
+    if len(steps) < 2:
+        return float("nan")
+    median = float(np.median(steps))
+    return float(steps.max()) / median if median > 0 else float("inf")
+
+
+def turns_around(cam_from_world: np.ndarray) -> float:
+    """Return how often the path (N, 4, 4), in order of time, goes about what the cameras look at.
+
+    The angle is counted about the axis in which the centres extend least, around the point nearest to all
+    optical axes, from its smallest value to its largest.
+    """
+    centres = camera_centres(cam_from_world)
+    axes = cam_from_world[:, 2, :3]
+    across = np.eye(3) - axes[:, :, None] * axes[:, None, :]
+    middle = np.linalg.lstsq(across.sum(0), np.einsum("nij,nj->i", across, centres), rcond=None)[0]
+    _, _, directions = np.linalg.svd(centres - centres.mean(0), full_matrices=False)
+    x, y = ((centres - middle) @ directions[:2].T).T
+    angle = np.unwrap(np.arctan2(y, x))
+    return float((angle.max() - angle.min()) / (2 * np.pi))

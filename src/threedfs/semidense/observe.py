@@ -1,0 +1,269 @@
+"""Search along epipolar lines, and Kalman fusion of what is found (Engel, Sturm, Cremers 2013, Sections 2.2, 2.3).
+
+Both live in one module because numba's cache does not notice edits in the modules that a kernel calls into.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+FOUND, NOT_SEARCHED, NOT_FOUND = 0, 1, 2
+"""Outcomes: a distinct match; the geometry allows no search; there is no distinct match."""
+
+_REACH = 2
+"""Samples on either side of the pixel: 5 in all."""
+
+_MAX_SPAN = 250.0
+"""Greatest length of the searched segment, in pixels of the neighbour: five samples are not distinct on more."""
+
+_INFLATION = 1.5
+"""Factor on the variance of an estimate that an observation contradicts."""
+
+_MIN_SPAN = 6.0
+"""Least length of the searched segment, in pixels of the neighbour."""
+
+
+class SearchRule(NamedTuple):
+    """What counts as a match; see `SemidenseParams` for each value."""
+
+    min_gradient_cosine2: float
+    image_noise: float
+    line_noise: float
+    max_residual: float
+    distinctness: float
+    rival_margin: float
+
+
+@njit(cache=True)
+def _sample(image, u, v):
+    column, row = int(u), int(v)
+    a, b = u - column, v - row
+    upper = (1 - a) * image[row, column] + a * image[row, column + 1]
+    lower = (1 - a) * image[row + 1, column] + a * image[row + 1, column + 1]
+    return (1 - b) * upper + b * lower
+
+
+@njit(cache=True)
+def _transfer(infinite, baseline, u, v, inverse_depth):
+    x = infinite[0, 0] * u + infinite[0, 1] * v + infinite[0, 2] + inverse_depth * baseline[0]
+    y = infinite[1, 0] * u + infinite[1, 1] * v + infinite[1, 2] + inverse_depth * baseline[1]
+    z = infinite[2, 0] * u + infinite[2, 1] * v + infinite[2, 2] + inverse_depth * baseline[2]
+    return x, y, z
+
+
+@njit(cache=True)
+def _invert_transfer(infinite, baseline, u, v, other_u, other_v, along_u):
+    """Inverse depth at which (u, v) is seen at (other_u, other_v), from the coordinate that varies more."""
+    x, y, z = _transfer(infinite, baseline, u, v, 0.0)
+    if along_u:
+        return (x - other_u * z) / (other_u * baseline[2] - baseline[0])
+    return (y - other_v * z) / (other_v * baseline[2] - baseline[1])
+
+
+@njit(cache=True)
+def _refine(differences, place):
+    """Sub-step shift of a local minimum, and its value, by the parabola through its neighbours."""
+    before, here, after = differences[place - 1], differences[place], differences[place + 1]
+    bend = before - 2 * here + after
+    if not 0 < bend < np.inf:
+        return 0.0, here
+    shift = 0.5 * (before - after) / bend
+    return shift, max(here - 0.25 * (before - after) * shift, 0.0)
+
+
+FLOOR = 1.0
+
+
+@njit(cache=True)
+def search_line(grey, gradient_u, gradient_v, other, other_valid, u, v, low, high, bounds, geometry, rule):
+    """Search the inverse depth of one pixel between `low` and `high`.
+
+    Five samples along the epipolar line are compared by the sum of squared differences, less that of their
+    means: exposure may drift between views. The best place must lie inside the segment, differ little, and be
+    better than every place over one step away by the factor `distinctness`; a parabola gives the sub-pixel step.
+
+    Parameters
+    ----------
+    grey, gradient_u, gradient_v : (H, W) float32
+        Keyframe, and its gradient.
+    other : (H2, W2) float32
+        Neighbour.
+    other_valid : (H2, W2) bool
+    u, v : int
+        Pixel.
+    low, high : float
+        Segment to search, inverse depth.
+    bounds : tuple of float
+        Least and greatest inverse depth there can be.
+    geometry : PairGeometry
+    rule : SearchRule
+
+    Returns
+    -------
+    outcome : int
+        FOUND, NOT_SEARCHED or NOT_FOUND.
+    inverse_depth, variance : float
+        Variance = alpha^2 (1 / 400 + sigma_geometry^2 + sigma_photometry^2), alpha the change of inverse
+        depth per pixel along the line; NaN unless FOUND.
+    """
+    nothing = (NOT_SEARCHED, np.nan, np.nan)
+    infinite, baseline, epipole = geometry.infinite, geometry.baseline, geometry.epipole
+
+    # The epipolar line through the pixel in the keyframe, and how steep the image is along it.
+    line_u = epipole[0] - epipole[2] * u
+    line_v = epipole[1] - epipole[2] * v
+    length = np.hypot(line_u, line_v)
+    steepness = np.hypot(gradient_u[v, u], gradient_v[v, u])
+    if length < 1e-12 or steepness < 1e-6:
+        return nothing
+    line_u /= length
+    line_v /= length
+    cosine = (gradient_u[v, u] * line_u + gradient_v[v, u] * line_v) / steepness
+    if cosine * cosine < rule.min_gradient_cosine2:
+        return nothing
+
+    # The segment in the neighbour, from low to high, extended by the reach of the samples.
+    x0, y0, z0 = _transfer(infinite, baseline, u, v, low)
+    x1, y1, z1 = _transfer(infinite, baseline, u, v, high)
+    if z0 <= 0 or z1 <= 0:
+        return nothing
+    x0, y0, x1, y1 = x0 / z0, y0 / z0, x1 / z1, y1 / z1
+    span = np.hypot(x1 - x0, y1 - y0)
+    wide0 = _transfer(infinite, baseline, u, v, bounds[0])
+    wide1 = _transfer(infinite, baseline, u, v, bounds[1])
+    if not 1e-9 < span <= _MAX_SPAN or wide0[2] <= 0 or wide1[2] <= 0:
+        return nothing
+    whole = np.hypot(wide1[0] / wide1[2] - wide0[0] / wide0[2], wide1[1] / wide1[2] - wide0[1] / wide0[2])
+    if whole < 1:
+        return nothing
+    step_u, step_v = (x1 - x0) / span, (y1 - y0) / span
+    # A well-known depth leaves a short segment: the observation itself still needs room to differ.
+    pad = max(0.0, (_MIN_SPAN - span) / 2)
+    x0, y0, span = x0 - pad * step_u, y0 - pad * step_v, span + 2 * pad
+    places = int(np.ceil(span)) + 1
+    along_u = abs(step_u) > abs(step_v)
+
+    # One step along the line in the neighbour is `scale` pixels along the line in the keyframe.
+    middle = 0.5 * (low + high)
+    xa, ya, za = _transfer(infinite, baseline, u, v, middle)
+    xb, yb, zb = _transfer(infinite, baseline, u + line_u, v + line_v, middle)
+    rate = (xb / zb - xa / za) * step_u + (yb / zb - ya / za) * step_v
+    if abs(rate) < 0.4 or abs(rate) > 2.5:
+        return nothing
+    scale = 1 / rate
+    height, width = grey.shape
+    reach = _REACH * abs(scale)
+    if u < reach + 1 or v < reach + 1 or u > width - 2 - reach or v > height - 2 - reach:
+        return nothing
+
+    template = np.empty(2 * _REACH + 1)
+    for k in range(-_REACH, _REACH + 1):
+        template[k + _REACH] = _sample(grey, u + k * scale * line_u, v + k * scale * line_v)
+    template -= template.mean()
+
+    # Samples run two steps past either end for the window and one more for the parabola.
+    count = places + 2 * (_REACH + 1)
+    samples = np.empty(count)
+    other_height, other_width = other.shape
+    for k in range(count):
+        su = x0 + (k - _REACH - 1) * step_u
+        sv = y0 + (k - _REACH - 1) * step_v
+        samples[k] = np.nan
+        if 0 <= su < other_width - 1 and 0 <= sv < other_height - 1 and other_valid[int(sv), int(su)]:
+            samples[k] = _sample(other, su, sv)
+
+    differences = np.empty(places + 2)
+    best = -1
+    seen = 0
+    for place in range(places + 2):
+        mean = 0.0
+        for k in range(2 * _REACH + 1):
+            mean += samples[place + k]
+        mean /= 2 * _REACH + 1
+        difference = 0.0
+        for k in range(2 * _REACH + 1):
+            difference += (samples[place + k] - mean - template[k]) ** 2
+        differences[place] = difference if difference == difference else np.inf
+        if difference == difference:
+            seen += 1
+            if best < 0 or difference < differences[best]:
+                best = place
+    if seen < 3:
+        return nothing
+    missed = (NOT_FOUND, np.nan, np.nan)
+    if best == 0 or best == places + 1 or differences[best - 1] == np.inf or differences[best + 1] == np.inf:
+        return missed
+    shift, least = _refine(differences, best)
+    if least > (2 * _REACH + 1) * rule.max_residual**2:
+        return missed
+    # Noise alone leaves this much difference at the true place, so a rival must stand out from it too.
+    noise = 2 * (2 * _REACH) * rule.image_noise**2
+    for place in range(places + 2):
+        if abs(place - best) > 1:
+            rival = differences[place]
+            if 0 < place < places + 1 and rival <= differences[place - 1] and rival <= differences[place + 1]:
+                rival = _refine(differences, place)[1]
+            if rival < rule.distinctness * least + rule.rival_margin * noise:
+                return missed
+
+    position = best - 1 + shift
+    found_u, found_v = x0 + position * step_u, y0 + position * step_v
+    inverse_depth = _invert_transfer(infinite, baseline, u, v, found_u, found_v, along_u)
+    if not bounds[0] <= inverse_depth <= bounds[1]:
+        return missed
+    beyond = _invert_transfer(infinite, baseline, u, v, found_u + step_u, found_v + step_v, along_u)
+    alpha = beyond - inverse_depth
+    slope = (samples[best + _REACH + 1] - samples[best + _REACH - 1]) / 2
+    slope = max(abs(slope), 0.5 * abs(steepness * cosine / rate))
+    variance = alpha**2 * (1 / 400 + rule.line_noise**2 / (cosine * cosine) + 2 * rule.image_noise**2 / slope**2)
+    return FOUND, inverse_depth, variance
+
+
+@njit(cache=True)
+def observe_neighbour(
+    grey, gradient_u, gradient_v, searched, other, other_valid, geometry, rule, bounds, consistency, state
+):
+    """Search every pixel in one neighbour and update the estimates by Kalman's rule.
+
+    An observation agrees when (difference / consistency)^2 <= sum of both variances; then means are weighted by
+    inverse variance. Otherwise the variance is inflated and the observation counts against the estimate.
+
+    Parameters
+    ----------
+    grey, gradient_u, gradient_v : (H, W) float32
+    searched : (H, W) bool
+        Pixels to search.
+    other, other_valid : (H2, W2) float32, bool
+    geometry : PairGeometry
+    rule : SearchRule
+    bounds : tuple of float
+        Least and greatest inverse depth.
+    consistency : float
+    state : (4, H, W) float64
+        Mean and variance of inverse depth, agreeing and contradicting neighbours; changed in place.
+    """
+    height, width = grey.shape
+    for v in range(height):
+        for u in range(width):
+            if not searched[v, u]:
+                continue
+            mean, variance = state[0, v, u], state[1, v, u]
+            reach = 2 * np.sqrt(variance)
+            low, high = max(mean - reach, bounds[0]), min(mean + reach, bounds[1])
+            outcome, observed, uncertainty = search_line(
+                grey, gradient_u, gradient_v, other, other_valid, u, v, low, high, bounds, geometry, rule
+            )
+            if outcome == NOT_FOUND:
+                state[3, v, u] += 1
+            elif outcome == FOUND:
+                total = variance + uncertainty
+                if (observed - mean) ** 2 > consistency**2 * total:
+                    state[1, v, u] = variance * _INFLATION
+                    state[3, v, u] += 1
+                else:
+                    state[0, v, u] = (uncertainty * mean + variance * observed) / total
+                    state[1, v, u] = variance * uncertainty / total
+                    state[2, v, u] += 1

@@ -1,0 +1,42 @@
+"""Check the depth maps of all keyframes against each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+
+from threedfs.fusion.consistency import ComparisonRule, check_consistency, rate_confidence
+from threedfs.io.consistency import ConsistencyMap, write_consistency
+from threedfs.io.depth_maps import read_depth_map
+from threedfs.io.keyframes import read_keyframes
+from threedfs.job import Job
+from threedfs.params.consistency import ConsistencyParams
+
+
+def run(
+    *,
+    keyframes: Path,
+    depth: list[Path],
+    consistency: Path,
+    params: ConsistencyParams,
+    job: Job,
+) -> None:
+    """Read all depth maps, a few at a time; write how far each pixel of each agrees with the others."""
+    views = [entry.view for entry in read_keyframes(keyframes).values()]
+    paths = {path.name.removesuffix(".zarr.zip"): path for path in depth}
+    agreements = check_consistency(
+        views,
+        lambda rank: read_depth_map(paths[views[rank].name]).depth,
+        ComparisonRule(params.depth_tolerance, params.max_views, params.witness_share),
+        job.threads,
+    )
+
+    def rate() -> Iterator[tuple[str, ConsistencyMap]]:
+        for view, agreement in zip(views, job.progress.track(agreements, "keyframe", len(views)), strict=True):
+            photometric = read_depth_map(paths[view.name]).confidence
+            confidence = rate_confidence(
+                agreement, photometric, prior_views=params.prior_views, full_share=params.full_share
+            )
+            yield view.name, ConsistencyMap(confidence, **vars(agreement))
+
+    write_consistency(consistency, rate(), job.header)

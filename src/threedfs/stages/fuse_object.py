@@ -1,0 +1,46 @@
+"""Fuse all depth maps again, on a fine grid around the object."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from threedfs.fusion.fuse import fuse_views, limit_clip_distance
+from threedfs.fusion.softmax import SoftMaximum
+from threedfs.geometry.grid import cover_box
+from threedfs.io.consistency import read_consistency
+from threedfs.io.keyframes import read_keyframes
+from threedfs.io.volumes import Volume, read_support, write_volume
+from threedfs.io.votes import read_votes
+from threedfs.job import Job
+from threedfs.params.fuse_object import FuseObjectParams
+
+
+def run(
+    *,
+    keyframes: Path,
+    depth: list[Path],
+    consistency: Path,
+    support: Path,
+    volume: Path,
+    params: FuseObjectParams,
+    job: Job,
+) -> None:
+    """Lay the grid over the object's box, fuse, and write the volume."""
+    place = read_support(support)
+    grid = cover_box(place.low, place.high, params.longest_side)
+    clip_distance = limit_clip_distance(
+        params.clip_distance, place.figures["thickness"], params.thickness_share, grid.spacing
+    )
+    fused = SoftMaximum(
+        grid,
+        clip_distance,
+        params.softmax_hardness,
+        distrust=params.distrust,
+        discontinuity=params.depth_discontinuity,
+        threads=job.threads,
+    )
+    trust = read_consistency(consistency) if params.weighting == "consistency" else None
+    votes = read_votes(read_keyframes(keyframes), depth, trust)
+    sdf, seen = fuse_views(job.progress.track(votes, "keyframe", len(depth)), fused)
+    job.progress.note(f"grid {grid.shape}, voxel {grid.spacing:.4g}, clip distance {clip_distance / grid.spacing:.1f}")
+    write_volume(volume, Volume(grid, sdf, seen), job.header)

@@ -1,0 +1,51 @@
+"""Fuse all depth maps on the grid of the scene."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from threedfs.fusion.fixation import find_fixation, viewing_distance
+from threedfs.fusion.fuse import fuse_views
+from threedfs.fusion.region import scene_region
+from threedfs.fusion.softmax import SoftMaximum
+from threedfs.geometry.grid import cover_box
+from threedfs.io.consistency import read_consistency
+from threedfs.io.keyframes import read_keyframes
+from threedfs.io.points import read_points
+from threedfs.io.volumes import Volume, write_volume
+from threedfs.io.votes import read_votes
+from threedfs.job import Job
+from threedfs.params.fuse_scene import FuseSceneParams
+
+
+def run(
+    *,
+    keyframes: Path,
+    points: Path,
+    depth: list[Path],
+    consistency: Path,
+    scene: Path,
+    params: FuseSceneParams,
+    job: Job,
+) -> None:
+    """Lay the grid over the region of interest of the sparse points, fuse, and write the volume."""
+    entries = read_keyframes(keyframes)
+    views = [entry.view for entry in entries.values()]
+    xyz = read_points(points).xyz
+    fixation = find_fixation(views, np.median(xyz, axis=0))
+    reach = params.region_reach * viewing_distance(views, fixation)
+    grid = cover_box(*scene_region(xyz, params.region_deviations, fixation, reach), params.longest_side)
+    fused = SoftMaximum(
+        grid,
+        params.clip_distance * grid.spacing,
+        params.softmax_hardness,
+        distrust=params.distrust,
+        discontinuity=params.depth_discontinuity,
+        threads=job.threads,
+    )
+    trust = read_consistency(consistency) if params.weighting == "consistency" else None
+    votes = read_votes(entries, depth, trust)
+    sdf, seen = fuse_views(job.progress.track(votes, "keyframe", len(depth)), fused)
+    write_volume(scene, Volume(grid, sdf, seen), job.header)

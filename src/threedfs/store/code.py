@@ -1,0 +1,132 @@
+"""The identity of a stage's code: what it would compute, not how its source is laid out."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import importlib.util
+from dataclasses import dataclass
+from functools import lru_cache
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+_DISTRIBUTIONS = {
+    "cv2": "opencv-python-headless",
+    "maxflow": "PyMaxflow",
+    "skimage": "scikit-image",
+    "sklearn": "scikit-learn",
+}
+
+
+@dataclass(frozen=True)
+class Code:
+    """What a module runs on.
+
+    Attributes
+    ----------
+    digest : str
+        SHA-256 over the syntax trees of the module and of the modules of its package that it imports, transitively.
+    libraries : tuple of str
+        Top-level names of everything else that these import, sorted; the standard library included.
+    """
+
+    digest: str
+    libraries: tuple[str, ...]
+
+
+def digest_code(module: str) -> Code:
+    """Find the modules that `module` runs on and digest them.
+
+    Comments, docstrings, blank lines and line breaks do not count; imports inside functions do.
+
+    Parameters
+    ----------
+    module : str
+        e.g. ``"threedfs.stages.depth"``; it is read, not imported.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If there is no such module.
+    """
+    package = module.partition(".")[0]
+    root = _package_folder(package)
+    source = _source_file(root, module)
+    if source is None:
+        raise ModuleNotFoundError(f"no module named {module} under {root}")
+    found, pending, libraries = {}, _with_parents(module), set()
+    while pending:
+        name = pending.pop()
+        path = _source_file(root, name)
+        if path is None:  # a name imported from a module, not a module
+            continue
+        stamp = path.stat()
+        found[name], imports = _read_module(path, name, stamp.st_mtime_ns, stamp.st_size)
+        for imported in imports:
+            if imported == package or imported.startswith(package + "."):
+                pending |= {parent for parent in _with_parents(imported) if parent not in found}
+            else:
+                libraries.add(imported.partition(".")[0])
+    text = "\n".join(f"{name} {found[name]}" for name in sorted(found))
+    return Code(hashlib.sha256(text.encode()).hexdigest(), tuple(sorted(libraries)))
+
+
+@lru_cache(maxsize=256)
+def library_versions(libraries: tuple[str, ...]) -> dict[str, str]:
+    """Look up the installed versions of libraries by import name; the standard library has none."""
+    versions = {}
+    for library in libraries:
+        try:
+            versions[library] = version(_DISTRIBUTIONS.get(library, library))
+        except PackageNotFoundError:
+            continue
+    return versions
+
+
+@lru_cache(maxsize=16)
+def _package_folder(package: str) -> Path:
+    specification = importlib.util.find_spec(package)
+    if specification is None or specification.origin is None:
+        raise ModuleNotFoundError(f"no package named {package}")
+    return Path(specification.origin).parent
+
+
+def _source_file(root: Path, module: str) -> Path | None:
+    path = root.joinpath(*module.split(".")[1:])
+    if (path / "__init__.py").is_file():
+        return path / "__init__.py"
+    source = path.with_suffix(".py")
+    return source if path != root and source.is_file() else None
+
+
+@lru_cache(maxsize=1024)
+def _read_module(path: Path, module: str, _mtime_ns: int, _size: int) -> tuple[str, frozenset[str]]:
+    """Digest one module and list all that it imports; the stamp makes the cache notice edits."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
+    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+    imports = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            imports |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            origin = _resolve(node, package)
+            imports |= {origin, *(f"{origin}.{alias.name}" for alias in node.names)}
+        elif isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
+            if ast.get_docstring(node, clean=False) is not None:
+                node.body = node.body[1:]
+    dump = ast.dump(tree, include_attributes=False)
+    return hashlib.sha256(dump.encode()).hexdigest(), frozenset(imports)
+
+
+def _resolve(node: ast.ImportFrom, package: str) -> str:
+    if not node.level:
+        return node.module or ""
+    parts = package.split(".")
+    base = ".".join(parts[: len(parts) - node.level + 1])
+    return f"{base}.{node.module}" if node.module else base
+
+
+def _with_parents(module: str) -> set[str]:
+    """Return the module and the packages around it, whose ``__init__`` an import runs too."""
+    parts = module.split(".")
+    return {".".join(parts[:count]) for count in range(1, len(parts) + 1)}

@@ -1,0 +1,71 @@
+"""Files that appear whole or not at all, and the clearing away of what killed jobs left."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import socket
+from pathlib import Path
+
+_SUFFIX = ".part"
+
+
+def temporary_name(path: Path) -> Path:
+    """Return a hidden name beside `path` that tells which process of which machine writes it."""
+    return path.with_name(f".{path.name}.{socket.gethostname()}.{os.getpid()}{_SUFFIX}")
+
+
+def write_atomically(path: Path, data: bytes) -> None:
+    """Write a small file: to a temporary name, flushed, then renamed."""
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = temporary_name(path)
+    try:
+        with open(temporary, "wb") as file:
+            file.write(data)
+            file.flush()
+            os.fsync(file.fileno())
+        os.replace(temporary, path)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def flush_folder(folder: Path) -> None:
+    """Flush a folder's entries to disk, so that a rename in it survives a power cut."""
+    descriptor = os.open(folder, os.O_RDONLY)
+    try:
+        os.fsync(descriptor)
+    finally:
+        os.close(descriptor)
+
+
+def remove(path: Path) -> None:
+    """Remove a file or folder if it is there."""
+    if path.is_dir() and not path.is_symlink():
+        shutil.rmtree(path, ignore_errors=True)
+    else:
+        path.unlink(missing_ok=True)
+
+
+def remove_abandoned(folder: Path, pattern: str = "*") -> None:
+    """Remove temporary files and folders whose process on this machine has ended.
+
+    Parameters
+    ----------
+    folder : Path
+    pattern : str
+        Glob of the final names to look at.
+    """
+    for path in folder.glob(f".{pattern}.{socket.gethostname()}.*{_SUFFIX}"):
+        process = path.name.removesuffix(_SUFFIX).rpartition(".")[2]
+        if process.isdigit() and not _is_running(int(process)):
+            remove(path)
+
+
+def _is_running(process: int) -> bool:
+    try:
+        os.kill(process, 0)
+    except ProcessLookupError:
+        return False
+    except PermissionError:
+        return True
+    return True

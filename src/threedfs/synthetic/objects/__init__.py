@@ -1,0 +1,1 @@
+"""Objects modelled in code; each module makes one solid."""

@@ -1,0 +1,109 @@
+"""Contract: declared parameters, defaults, schema, documentation and presets are in step."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import fields
+from pathlib import Path
+
+import pytest
+import yaml
+
+from threedfs.errors import UserError
+from threedfs.params.configuration import check_configuration, configuration_schema, list_sequences
+from threedfs.params.document import FILES
+from threedfs.params.schema import STAGES, declared_stages, default_settings, make_params
+
+ROOT = Path(__file__).resolve().parents[2]
+STAGE_PARAMETERS = [(s, f.name) for s, declared in declared_stages().items() for f in fields(declared)]
+
+
+@pytest.fixture(scope="module")
+def defaults() -> dict:
+    """The configuration as it ships."""
+    return yaml.safe_load((ROOT / "config/config.yaml").read_text())
+
+
+def merged(defaults: dict, other: dict) -> dict:
+    """Lay a configuration over the defaults, as Snakemake does."""
+    sections = {key: {**value, **other.get(key, {})} for key, value in defaults.items() if isinstance(value, dict)}
+    return {**defaults, **other, **sections}
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_generated_file_is_in_step_with_the_parameters(name):
+    assert (ROOT / name).read_text() == FILES[name](), "run make config"
+
+
+def test_every_module_of_parameters_is_a_stage():
+    modules = {path.stem for path in (ROOT / "src/threedfs/params").glob("*.py")}
+    shared = {"__init__", "field", "schema", "configuration", "document", "fusion"}
+    assert modules - shared == set(declared_stages()) <= set(STAGES)
+
+
+def test_defaults_are_valid_and_survive_the_round_trip(defaults):
+    check_configuration(defaults, configuration_schema())
+    for stage, declared in declared_stages().items():
+        assert make_params(declared, defaults[stage]) == declared()
+        assert make_params(declared, default_settings(declared)) == declared()
+
+
+@pytest.mark.parametrize(("stage", "name"), STAGE_PARAMETERS)
+def test_every_parameter_is_used_by_its_stage(stage, name):
+    tree = ast.parse((ROOT / f"src/threedfs/stages/{stage}.py").read_text())
+    whole = any(isinstance(n, ast.Name) and n.id == "params" and isinstance(n.ctx, ast.Load) for n in ast.walk(tree))
+    used = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
+    assert whole and (name in used or passes_params_on(tree)), f"{stage}.{name} does nothing"
+
+
+def passes_params_on(tree: ast.AST) -> bool:
+    """Say whether a stage hands its parameters to a function as a whole."""
+    calls = (node for node in ast.walk(tree) if isinstance(node, ast.Call))
+    given = (value for call in calls for value in [*call.args, *(keyword.value for keyword in call.keywords)])
+    return any(isinstance(value, ast.Name) and value.id == "params" for value in given)
+
+
+@pytest.mark.parametrize(("stage", "name"), STAGE_PARAMETERS)
+def test_every_parameter_says_what_it_means(stage, name):
+    metadata = declared_stages()[stage].__dataclass_fields__[name].metadata
+    assert len(metadata["meaning"]) > 8
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "config").glob("*/*.yaml")), ids=lambda path: path.name)
+def test_presets_and_data_sets_are_valid(defaults, path):
+    check_configuration(merged(defaults, yaml.safe_load(path.read_text())), configuration_schema())
+
+
+def test_paper_preset_differs_from_the_defaults_where_it_speaks(defaults):
+    paper = yaml.safe_load((ROOT / "config/presets/paper.yaml").read_text())
+    assert any(paper[stage][name] != defaults[stage][name] for stage in paper for name in paper[stage])
+
+
+def test_whole_numbers_given_for_real_ones_make_equal_parameters():
+    declared = declared_stages()["depth"]
+    settings = default_settings(declared)
+    round_ones = {name: int(v) for name, v in settings.items() if isinstance(v, float) and v == int(v)}
+    assert round_ones
+    assert repr(make_params(declared, settings | round_ones)) == repr(make_params(declared, settings))
+
+
+def test_sample_is_taken_when_nothing_is_given(defaults, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    sequences = list_sequences(defaults, ROOT)
+    assert sequences["sample"]["source"] == "resources/sample/video.mp4"
+    assert sequences["sample"]["cameras"] is None
+    assert sequences["sample"]["truth_cameras"] is not None
+
+
+def test_video_takes_the_place_of_all_sequences(defaults, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("mug.v2.mp4").touch()
+    config = {**defaults, "video": "mug.v2.mp4", "sequences": {"other": {"source": "nowhere"}}}
+    assert list(list_sequences(config, ROOT)) == ["mug.v2"]
+
+
+def test_absent_file_is_named_with_its_key(defaults, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    config = {**defaults, "sequences": {"mug": {"source": str(tmp_path), "truth": {"mesh": "mug.ply"}}}}
+    with pytest.raises(UserError, match=r"sequences\.mug\.truth\.mesh: expected a file or folder, found no mug\.ply"):
+        list_sequences(config, ROOT)

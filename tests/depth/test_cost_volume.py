@@ -1,0 +1,102 @@
+"""Oracle, exact and property: ZNCC against loops, and the cost volume on a plane of known depth."""
+
+import numpy as np
+import scenes
+
+from threedfs.depth.candidates import space_candidates
+from threedfs.depth.cost_volume import compute_cost_volume, plane_homography
+from threedfs.depth.zncc import MISSING, accumulate_cost, describe_patches, prepare_grey
+from threedfs.geometry.projection import backproject, project
+
+
+def zncc_cost(reference, warped, radius, floor=0.0):
+    patches = describe_patches(reference, radius, floor)
+    grey = np.where(reference > MISSING / 2, reference, np.float32(0))
+    cost = np.zeros_like(reference)
+    scratch = [np.empty(reference.shape[1], np.float32) for _ in range(3)]
+    accumulate_cost(
+        warped,
+        grey,
+        patches.mean,
+        patches.inverse_deviation,
+        radius,
+        np.float32(floor),
+        np.float32(0.5),
+        *scratch,
+        cost,
+    )
+    return cost
+
+
+def random_pair(seed=0, shape=(20, 30)):
+    rng = np.random.default_rng(seed)
+    return [rng.uniform(-120, 120, shape).astype(np.float32) for _ in range(2)]
+
+
+def test_zncc_equals_numpys_correlation_coefficient():
+    """Single-precision sums over at most 25 values below 128^2: 1e-4 is a hundred of their roundings."""
+    reference, warped = random_pair()
+    for radius in (1, 2):
+        cost = zncc_cost(reference, warped, radius)
+        for v, u in [(radius, radius), (9, 14), (19 - radius, 29 - radius)]:
+            window = np.s_[v - radius : v + radius + 1, u - radius : u + radius + 1]
+            expected = (1 - np.corrcoef(reference[window].ravel(), warped[window].ravel())[0, 1]) / 2
+            assert abs(cost[v, u] - expected) < 1e-4
+
+
+def test_gain_and_offset_do_not_change_the_cost():
+    reference, warped = random_pair(1)
+    assert np.allclose(zncc_cost(reference, warped, 1), zncc_cost(reference, 0.5 * warped + 7, 1), atol=1e-4)
+
+
+def test_a_variance_floor_keeps_noise_from_matching():
+    """Two equal patches of noise far below the floor cost nearly 0.5, the cost of no correlation."""
+    noise = random_pair(2)[0] * np.float32(0.001)
+    assert zncc_cost(noise, noise, 1, floor=0.0)[5, 5] < 0.01
+    assert zncc_cost(noise, noise, 1, floor=4.0)[5, 5] > 0.49
+
+
+def test_missing_pixels_are_charged():
+    reference, warped = random_pair(3)
+    warped[10, 15] = MISSING
+    cost = zncc_cost(reference, warped, 1)
+    assert np.all(cost[9:12, 14:17] == 0.5)
+    assert np.all(cost[0] == 0.5) and np.all(cost[:, -1] == 0.5)
+
+
+def test_homography_agrees_with_projection():
+    reference, neighbour = scenes.views()[:2]
+    pixel = np.array([20.0, 30.0])
+    expected, _ = project(neighbour, backproject(reference, pixel, np.array(1.3)))
+    mapped = plane_homography(reference, neighbour, 1.3) @ [*pixel, 1]
+    assert np.allclose(mapped[:2] / mapped[2], expected, atol=1e-10)
+
+
+def test_least_cost_lies_at_the_true_depth():
+    """Nearest candidate within one step for 95 % of the pixels: the rest see patches beyond a neighbour's border."""
+    reference, *neighbours = scenes.views()
+    images = scenes.grey_images()
+    candidates = space_candidates(0.6, 1.8, 48, "inverse")
+    cost = compute_cost_volume(
+        reference,
+        images["0"],
+        neighbours,
+        lambda view: images[view.name],
+        candidates,
+        patch_radius=1,
+        variance_floor=0.0,
+        missing_cost=0.5,
+    )
+    assert cost.shape == (48, 72, 96) and cost.dtype == np.float32
+    assert cost.min() >= 0 and cost.max() <= 1.0001
+    truth = scenes.plane_depth(reference)
+    nearest = np.abs(1 / candidates[:, None, None] - 1 / truth).argmin(0)
+    inner = np.s_[12:-12, 12:-12]
+    assert (np.abs(cost.argmin(0) - nearest)[inner] <= 1).mean() > 0.95
+
+
+def test_invalid_pixels_are_missing():
+    valid = np.ones((4, 5), bool)
+    valid[0] = False
+    grey = prepare_grey(np.full((4, 5, 3), 200, np.uint8), valid)
+    assert np.all(grey[0] == MISSING) and np.all(grey[1:] == 72)

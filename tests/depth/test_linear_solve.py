@@ -1,0 +1,133 @@
+"""Exact, property and oracle: priors, and the multigrid solve against a direct one."""
+
+import numpy as np
+import pytest
+import scipy.sparse as sparse
+from scipy.sparse.linalg import spsolve
+
+from threedfs.depth.bending import HALF_OFFSETS, PRIORS, assemble_prior, prior_energy
+from threedfs.depth.linear_solve import pose_problem, solve_surface
+from threedfs.depth.multigrid import Preconditioner, coarsen_diagonal, coarsen_prior, padded_shape
+
+SHAPE = (50, 61)
+
+
+def random_weight(seed=0, shape=SHAPE):
+    rng = np.random.default_rng(seed)
+    return np.exp(-5 * (rng.random(shape) > 0.95))
+
+
+def sparse_matrix(stencil):
+    height, width = stencil.shape[:2]
+    index = np.arange(height * width).reshape(height, width)
+    rows, columns, values = [], [], []
+    for k, (dv, du) in enumerate(HALF_OFFSETS):
+        v, u = np.nonzero(stencil[..., k])
+        here, there, value = index[v, u], index[v + dv, u + du], stencil[v, u, k]
+        rows += [here] if k == 0 else [here, there]
+        columns += [there] if k == 0 else [there, here]
+        values += [value] if k == 0 else [value, value]
+    n = height * width
+    return sparse.csc_matrix((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), (n, n))
+
+
+@pytest.mark.parametrize("prior", PRIORS)
+def test_stencil_is_the_energys_matrix(prior):
+    depth, weight = np.random.default_rng(1).standard_normal(SHAPE), random_weight()
+    matrix = sparse_matrix(assemble_prior(weight, prior))
+    assert depth.ravel() @ matrix @ depth.ravel() == pytest.approx(prior_energy(depth, weight, prior), rel=1e-12)
+
+
+def test_planes_do_not_bend():
+    v, u = np.mgrid[: SHAPE[0], : SHAPE[1]]
+    slanted = 0.3 * u - 0.2 * v + 4
+    for prior in ("second_order", "rotation_invariant"):
+        assert prior_energy(slanted, random_weight(), prior) < 1e-18
+    assert prior_energy(slanted, np.ones(SHAPE), "first_order") > 1
+    assert prior_energy(np.full(SHAPE, 2.0), np.ones(SHAPE), "first_order") == 0
+
+
+def test_only_the_rotation_invariant_prior_ignores_rotation():
+    """A saddle u v is (u^2 - v^2) / 2 turned by 45 degrees: equal bending, but no second derivative along the axes."""
+    v, u = np.mgrid[-20:21, -20:21].astype(float)
+    straight, turned, weight = (u**2 - v**2) / 2, u * v, np.ones((41, 41))
+    invariant = [prior_energy(d, weight, "rotation_invariant") for d in (straight, turned)]
+    # Second differences are taken at 39 x 41 places, mixed ones at 40 x 40: 0.1 % apart.
+    assert invariant[0] == pytest.approx(invariant[1], rel=2e-3)
+    assert prior_energy(turned, weight, "second_order") == 0
+    assert prior_energy(straight, weight, "second_order") > 1000
+
+
+def test_padded_shapes_halve_evenly():
+    assert padded_shape((480, 640)) == (481, 641)
+    assert padded_shape((10, 12)) == (11, 13) or padded_shape((10, 12)) == (10, 12)
+
+
+def test_preconditioner_is_symmetric_and_positive():
+    """Single precision: relative 1e-4."""
+    shape = padded_shape((60, 70))
+    levels = coarsen_prior(random_weight(2, shape), "rotation_invariant")
+    preconditioner = Preconditioner([levels, coarsen_diagonal(np.full(shape, 1e-3))], [1.0, 1.0])
+    rng = np.random.default_rng(3)
+    a, b = (np.pad(rng.standard_normal(shape), 2).ravel() for _ in range(2))
+    left, right = a @ preconditioner.apply(b), b @ preconditioner.apply(a)
+    assert left == pytest.approx(right, rel=1e-4, abs=1e-4 * abs(a @ preconditioner.apply(a)))
+    assert a @ preconditioner.apply(a) > 0
+
+
+def weak_problem(prior):
+    """Confident pixels are few, a large region has next to no data, measurements weigh a million times more."""
+    rng = np.random.default_rng(4)
+    confidence = np.where(rng.random(SHAPE) < 0.3, 1.0, 1e-4)
+    confidence[15:40, 20:] = 1e-5
+    measurement = np.where(rng.random(SHAPE) < 0.02, 1000.0, 0.0)
+    v, u = np.mgrid[: SHAPE[0], : SHAPE[1]]
+    truth = 1 + 0.2 * np.sin(u / 20) + 0.1 * np.cos(v / 15)
+    auxiliary = truth + 0.03 * rng.standard_normal(SHAPE)
+    weight = random_weight()
+    return weight, confidence, measurement, truth, auxiliary, pose_problem(weight, confidence, measurement, prior)
+
+
+@pytest.mark.parametrize("prior", PRIORS)
+@pytest.mark.parametrize("coupling_factor, smoothness", [(0.5, 0.1), (10.0, 10.0), (1.0, 1e3)])
+def test_solution_equals_a_direct_solve(prior, coupling_factor, smoothness):
+    """Away from the padding, whose weight of 1e-4 bends the last rows, within 1 % of the noise of 0.03."""
+    weight, confidence, measurement, truth, auxiliary, problem = weak_problem(prior)
+    solution = solve_surface(
+        problem,
+        auxiliary,
+        truth,
+        np.ones(SHAPE),
+        coupling_factor=coupling_factor,
+        smoothness=smoothness,
+        tolerance=1e-8,
+        max_steps=200,
+    )
+    diagonal = (coupling_factor * confidence + measurement).ravel()
+    right = (coupling_factor * confidence * auxiliary + measurement * truth).ravel()
+    matrix = smoothness * sparse_matrix(assemble_prior(weight, prior)) + sparse.diags(diagonal)
+    direct = spsolve(matrix.tocsc(), right).reshape(SHAPE)
+    assert solution.residual <= 1e-8
+    assert np.abs(solution.depth - direct)[:-4, :-4].max() < 3e-4
+
+
+def test_warm_start_at_the_solution_takes_no_step():
+    *_, truth, auxiliary, problem = weak_problem("rotation_invariant")
+    settings = dict(coupling_factor=1.0, smoothness=1.0, max_steps=200)
+    first = solve_surface(problem, auxiliary, truth, np.ones(SHAPE), tolerance=1e-9, **settings)
+    again = solve_surface(problem, auxiliary, truth, first.depth, tolerance=1e-3, **settings)
+    assert again.steps == 0
+
+
+def test_tighter_tolerance_is_nearer_the_truth():
+    """Convergence: the error against a fully converged solve falls with the tolerance."""
+    *_, truth, auxiliary, problem = weak_problem("second_order")
+    settings = dict(coupling_factor=1.0, smoothness=10.0, max_steps=400)
+    reference = solve_surface(problem, auxiliary, truth, np.ones(SHAPE), tolerance=1e-11, **settings).depth
+    errors = [
+        np.abs(
+            solve_surface(problem, auxiliary, truth, np.ones(SHAPE), tolerance=t, **settings).depth - reference
+        ).max()
+        for t in (1e-2, 1e-4, 1e-6)
+    ]
+    assert errors[0] > 5 * errors[1] > 25 * errors[2]

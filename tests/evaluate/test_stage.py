@@ -1,0 +1,136 @@
+"""Exact, property and rejection: the stage on a run whose results are the truth itself, and on faulty truth."""
+
+import json
+from dataclasses import replace
+
+import cv2
+import numpy as np
+import pytest
+
+from threedfs.errors import UserError
+from threedfs.io.depth_maps import read_depth_map, write_depth_map
+from threedfs.io.images import read_mask, write_mask
+from threedfs.io.meshes import read_mesh, write_mesh
+from threedfs.params.evaluate import EvaluateParams
+from threedfs.types import Mesh
+
+
+def test_the_truth_scores_full_marks(finished):
+    found = finished.score()
+    assert set(found["iou"]) == {f"{10 * number:06d}" for number in range(6)}
+    # the same mesh drawn in two worlds: a pixel centre on an edge may round either way
+    assert found["iou_min"] > 0.995
+    assert set(found["iou_unseen"]) == {"between_0", "between_1"} and found["iou_unseen_mean"] > 0.995
+    assert found["depth_error_median"] < 1e-4  # depth maps are float32: 6e-8 relative, in percent
+    assert found["depth_covered"] > 99.9
+    assert found["pose_centre_error_max"] < 1e-7 and found["pose_rotation_error_max"] < 1e-5
+    # 2000 samples, 3 % of the diagonal apart: beside an edge the nearest face is missed now and then
+    assert found["mesh_f_score_0.5"] > 0.99 and found["mesh_chamfer"] < 0.01
+    assert found["mesh_closed"] == 1
+    assert found["frames_posed"] == 100
+    assert (found["path_turns"], found["path_continuity"], found["reprojection_error"]) == (0.75, 1.5, 0.4)
+    assert not any(name.startswith("cylinder") for name in found)
+
+
+def test_a_grown_mesh_and_a_scaled_depth_show_by_how_much(finished):
+    mesh = read_mesh(finished.inputs["mesh"])
+    middle = mesh.vertices.mean(0)
+    write_mesh(finished.folder / "grown.ply", Mesh(middle + 1.1 * (mesh.vertices - middle), mesh.faces))
+    for path in finished.inputs["depth"]:
+        depth_map = read_depth_map(path)
+        write_depth_map(path, replace(depth_map, depth=1.02 * depth_map.depth), {})
+    found = finished.score(mesh=finished.folder / "grown.ply")
+    assert found["depth_error_median"] == pytest.approx(2, abs=1e-3)
+    assert found["depth_within_1"] == 0 and found["depth_within_10"] > 99.9
+    assert found["iou_unseen_mean"] == pytest.approx(1 / 1.1**2, abs=0.03)  # areas grow by about the square
+    assert found["mesh_f_score_1"] < 0.1
+
+
+def test_the_table_is_the_same_twice(finished):
+    finished.score()
+    first = (finished.folder / "metrics.csv").read_bytes()
+    finished.score()
+    assert (finished.folder / "metrics.csv").read_bytes() == first
+
+
+@pytest.mark.parametrize(
+    "change",
+    [{"silhouette_erosion": 5}, {"surface_samples": 1500}, {"mesh_thresholds": (2.0,)}],
+)
+def test_every_parameter_changes_the_table(finished, change):
+    # a depth error that grows towards the border gives the parameters something to act on
+    path = finished.inputs["depth"][0]
+    depth_map = read_depth_map(path)
+    factor = 1 + 0.01 * np.hypot(*np.mgrid[-30:30, -40:40]) / 50
+    write_depth_map(path, replace(depth_map, depth=(depth_map.depth * factor).astype(np.float32)), {})
+    plain = finished.score()
+    assert finished.score(params=replace(EvaluateParams(surface_samples=2000), **change)) != plain
+
+
+def test_a_sequence_named_a_can_is_compared_with_a_cylinder(finished):
+    found = finished.score(params=EvaluateParams(surface_samples=2000, cylinder_sequences=("ring",)))
+    assert found["cylinder_residual_median"] > 1  # a box is far from a cylinder
+
+
+def test_without_truth_there_is_still_a_table(finished):
+    none = dict.fromkeys(("masks_truth", "cameras_truth", "mesh_truth"))
+    found = finished.score(**none)
+    assert set(found) == {"frames_posed", "path_continuity", "path_turns", "reprojection_error", "mesh_closed"}
+
+
+def test_depth_images_in_metres(finished):
+    folder = finished.folder / "depth_truth"
+    folder.mkdir()
+    for path in finished.inputs["depth"]:
+        # the scene is a quarter of the truth, and a working pixel two of the source
+        depth = np.nan_to_num(read_depth_map(path).depth / 0.25).repeat(2, axis=0).repeat(2, axis=1)
+        cv2.imwrite(str(folder / path.name.replace(".zarr.zip", ".depth.png")), np.rint(1000 * depth).astype(np.uint16))
+    poses = json.loads(finished.inputs["poses"].read_text())
+    finished.inputs["poses"].write_text(json.dumps({**poses, "distortion": [0.0, 0.0]}))
+    found = finished.score(depth_truth=folder)
+    assert found["scene_depth_rmse"] < 5e-4  # half a millimetre of rounding
+    assert found["scene_depth_covered"] == 100
+
+
+def test_refuses_a_mask_of_the_wrong_size(finished):
+    path = finished.inputs["masks_truth"] / "20.png"
+    write_mask(path, read_mask(path)[::2, ::2])
+    with pytest.raises(UserError, match=r"20.png: expected a mask of 160 x 120 pixels .* got 80 x 60"):
+        finished.score()
+    assert not (finished.folder / "metrics.csv").exists()
+
+
+def test_refuses_masks_that_belong_to_no_frame(finished):
+    folder = finished.folder / "other"
+    write_mask(folder / "dragon.png", np.ones((120, 160), bool))
+    with pytest.raises(UserError, match="expected masks named after frames"):
+        finished.score(masks_truth=folder)
+
+
+def test_tells_of_masks_of_frames_that_are_no_keyframes(finished):
+    folder = finished.inputs["masks_truth"]
+    write_mask(folder / "000110.png", read_mask(folder / "20.png"))
+    assert finished.score()["masks_without_keyframe"] == 1
+    assert "no score for frames with a true mask that are no keyframes: 000110" in finished.log.getvalue()
+
+
+def test_refuses_an_unreadable_mesh(finished):
+    path = finished.folder / "broken.ply"
+    path.write_text("ply\nnot a mesh")
+    with pytest.raises(UserError, match=r"broken.ply: expected a triangle mesh"):
+        finished.score(mesh_truth=path)
+
+
+def test_refuses_a_mesh_without_cameras(finished):
+    with pytest.raises(UserError, match=r"truth.mesh: expected truth.cameras beside it"):
+        finished.score(cameras_truth=None)
+
+
+def test_refuses_cameras_of_other_frames(finished):
+    content = json.loads(finished.inputs["cameras_truth"].read_text())
+    for frame in content["frames"]:
+        frame["video_frame"] = 5 + 10 * content["frames"].index(frame)
+    path = finished.folder / "other.json"
+    path.write_text(json.dumps(content))
+    with pytest.raises(UserError, match="make the names agree"):
+        finished.score(cameras_truth=path)

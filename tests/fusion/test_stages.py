@@ -1,0 +1,178 @@
+"""Contract tests of the stages from depth maps to the object, on a sphere that floats just above a table."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from threedfs.errors import UserError
+from threedfs.geometry.projection import backproject_map
+from threedfs.geometry.similarity import Similarity
+from threedfs.io.consistency import read_consistency
+from threedfs.io.depth_maps import DepthMap, Semidense, write_depth_map, write_semidense
+from threedfs.io.frames import Frame, write_frames
+from threedfs.io.images import read_mask
+from threedfs.io.keyframes import write_keyframes
+from threedfs.io.points import write_points
+from threedfs.io.poses import Poses, write_poses
+from threedfs.io.volumes import read_silhouettes, read_support, read_volume
+from threedfs.job import Job
+from threedfs.params.consistency import ConsistencyParams
+from threedfs.params.fuse_object import FuseObjectParams
+from threedfs.params.fuse_scene import FuseSceneParams
+from threedfs.params.locate import LocateParams
+from threedfs.params.object import ObjectParams
+from threedfs.progress import Progress
+from threedfs.stages import consistency, fuse_object, fuse_scene, locate
+from threedfs.stages import object as object_stage
+from threedfs.types import Keyframe, SparsePoints
+
+HEADER = {"provenance": "test"}
+
+
+def lay_out(folder, scene):
+    """Write what the stages before fusion would have: exact depth, points on a tenth of the pixels."""
+    rng = np.random.default_rng(0)
+    clouds = []
+    for view in scene.views:
+        depth = scene.depth(view)
+        ones = np.ones(depth.shape, np.float32)
+        write_depth_map(folder / "depth" / f"{view.name}.zarr.zip", DepthMap(np.float32(depth), 0 * ones, ones), HEADER)
+        inverse = np.where(rng.random(depth.shape) < 0.1, 1 / depth, np.nan).astype(np.float32)
+        semidense = Semidense(inverse, (0.01 * inverse) ** 2)
+        write_semidense(folder / "semidense" / f"{view.name}.zarr.zip", semidense, HEADER)
+        clouds.append(backproject_map(view, 1 / inverse.astype(np.float64))[np.isfinite(inverse)])
+    xyz = np.concatenate(clouds)
+    xyz = xyz[np.linalg.norm(xyz, axis=1) < 2]
+    none = np.zeros(len(xyz), np.int64)
+    sparse = SparsePoints(xyz, np.zeros((len(xyz), 3), np.uint8), np.ones(len(xyz)), none, none)
+    write_points(folder / "points.zarr.zip", sparse, HEADER)
+    keyframes = [Keyframe(view, (), 0.5, 3.0) for view in scene.views]
+    write_keyframes(folder / "keyframes.json", keyframes, HEADER)
+    poses = Poses(tuple(scene.views), (), (0.0, 0.0), Similarity(1.0, np.eye(3), np.zeros(3)))
+    write_poses(folder / "poses.json", poses, HEADER)
+    blank = np.zeros((*scene.views[0].camera.shape, 3), np.uint8)
+    frames = [Frame(view.name, 0, 0.0, 1.0, blank) for view in scene.views]
+    write_frames(folder / "frames.zarr.zip", frames, HEADER, ordered=True, source_shape=(240, 320))
+
+
+def run_all(folder, threads=1, point_deviation=0.05):
+    job = Job(Progress("test"), HEADER, threads)
+    depth, semidense = (sorted((folder / name).iterdir()) for name in ("depth", "semidense"))
+    at = {"keyframes": folder / "keyframes.json"}
+    agreement = folder / "consistency.zarr.zip"
+    consistency.run(**at, depth=depth, consistency=agreement, params=ConsistencyParams(), job=job)
+    fuse_scene.run(
+        **at,
+        points=folder / "points.zarr.zip",
+        depth=depth,
+        consistency=agreement,
+        scene=folder / "scene.zarr.zip",
+        params=FuseSceneParams(longest_side=60),
+        job=job,
+    )
+    locate.run(
+        **at,
+        scene=folder / "scene.zarr.zip",
+        points=folder / "points.zarr.zip",
+        semidense=semidense,
+        support=folder / "support.json",
+        params=LocateParams(plane_candidates=500, point_deviation=point_deviation),
+        job=job,
+    )
+    fuse_object.run(
+        **at,
+        depth=depth,
+        consistency=agreement,
+        support=folder / "support.json",
+        volume=folder / "object.zarr.zip",
+        params=FuseObjectParams(longest_side=60),
+        job=job,
+    )
+    object_stage.run(
+        **at,
+        field=folder / "object.zarr.zip",
+        support=folder / "support.json",
+        poses=folder / "poses.json",
+        frames=folder / "frames.zarr.zip",
+        semidense=semidense,
+        mesh=folder / "mesh.ply",
+        volume=folder / "volume.zarr.zip",
+        silhouettes=folder / "silhouettes.zarr.zip",
+        masks=folder / "masks",
+        method="fused_sdf",
+        params=ObjectParams(),
+        job=job,
+    )
+
+
+@pytest.fixture(scope="module")
+def results(table, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("stages")
+    lay_out(folder, table)
+    run_all(folder)
+    return folder
+
+
+def test_support_and_box(results, table):
+    """Oracle: the table is z = 0, and the box holds the sphere without the rest of the table."""
+    support = read_support(results / "support.json")
+    assert np.degrees(np.arccos(support.plane.normal[2])) < 0.5
+    assert abs(support.plane.offset) < 0.01  # a third of a scene voxel
+    assert (support.low < table.centre - table.radius).all()
+    assert (support.high > table.centre + table.radius).all()
+    assert (support.high - support.low).max() < 2 * 2 * table.radius
+    assert support.figures["thickness"] == pytest.approx(2 * table.radius, rel=0.2)
+
+
+def test_mesh_is_the_sphere_closed(results, table):
+    """Oracle: one closed shell within a voxel and a half of the sphere and its foot."""
+    mesh = trimesh.load(results / "mesh.ply", process=False)
+    spacing = read_volume(results / "volume.zarr.zip").grid.spacing
+    assert mesh.is_watertight
+    assert mesh.is_winding_consistent
+    assert mesh.body_count == 1
+    assert mesh.volume == pytest.approx(4 / 3 * np.pi * table.radius**3, rel=0.15)
+    upper = mesh.vertices[mesh.vertices[:, 2] > table.radius]
+    assert np.abs(np.linalg.norm(upper - table.centre, axis=1) - table.radius).max() < 1.5 * spacing
+    assert mesh.vertices[:, 2].min() > -0.5 * spacing
+
+
+def test_silhouettes_are_the_spheres_outlines(results, table):
+    """Oracle: rays that hit the sphere; a maximum loses up to a voxel (here 1.4 pixels) around it."""
+    silhouettes = read_silhouettes(results / "silhouettes.zarr.zip")
+    assert sorted(silhouettes) == [view.name for view in table.views]
+    for view in table.views:
+        rays = backproject_map(view, np.ones(view.camera.shape)) - view.centre
+        toward = table.centre - view.centre
+        hit = (rays @ toward) ** 2 / (rays**2).sum(-1) >= toward @ toward - table.radius**2
+        mask = silhouettes[view.name]
+        assert (mask & hit).sum() / (mask | hit).sum() > 0.9
+        assert read_mask(results / "masks" / f"{view.name}.png").shape == (240, 320)
+
+
+def test_consistency_is_read_by_keyframe(results, table):
+    """Contract: what was streamed in comes out under its name."""
+    store = read_consistency(results / "consistency.zarr.zip")
+    assert store.names == tuple(view.name for view in table.views)
+    item = store.read(table.views[4].name)
+    assert item.confidence.shape == table.views[4].camera.shape
+    assert item.agree.dtype == np.uint8
+    assert (item.confidence >= 0).all()
+    assert (item.confidence <= 1).all()
+
+
+def test_bytes_do_not_depend_on_threads(results, table, tmp_path):
+    """Exact: everything again with two threads."""
+    lay_out(tmp_path, table)
+    run_all(tmp_path, threads=2)
+    made = [path.relative_to(tmp_path) for path in sorted(tmp_path.rglob("*")) if path.is_file()]
+    assert len(made) == 2 * len(table.views) + 4 + 6 + 1 + len(table.views)
+    for path in made:
+        assert (tmp_path / path).read_bytes() == (results / path).read_bytes(), path
+
+
+def test_object_without_points_is_told(table, tmp_path):
+    """Rejection: no semi-dense point is sure enough to support an object."""
+    lay_out(tmp_path, table)
+    with pytest.raises(UserError, match="No object was found above the support plane"):
+        run_all(tmp_path, point_deviation=0.001)

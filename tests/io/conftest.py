@@ -1,0 +1,154 @@
+"""One small value of every artifact, with its writer and reader."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from threedfs.geometry.rigid import look_at
+from threedfs.geometry.similarity import Similarity
+from threedfs.io import calibration, consistency, depth_maps, frames, keyframes, metrics, points, poses, volumes
+from threedfs.types import Camera, Keyframe, Plane, SparsePoints, View, VoxelGrid
+
+HEADER = {"parameters": {"size": 3, "names": ["a", "b"]}, "provenance": "0123"}
+RANDOM = np.random.default_rng(5)
+CAMERA = Camera(8, 6, 7.5, 7.25, 3.5, 2.5)
+
+
+def picture(dtype=np.float32) -> np.ndarray:
+    """An image of random numbers, one of them missing."""
+    image = RANDOM.random((6, 8)).astype(dtype)
+    image[2, 3] = np.nan
+    return image
+
+
+def view(name: str, x: float) -> View:
+    """A view of the origin."""
+    return View(name, CAMERA, look_at(np.array([x, 0.3, -2.0]), np.zeros(3), np.array([0.0, -1, 0])))
+
+
+@dataclass(frozen=True)
+class Artifact:
+    """An artifact's file name, value, writer (path, value, header) and reader (path)."""
+
+    name: str
+    value: Any
+    write: Callable[[Path, Any, dict], None]
+    read: Callable[[Path], Any]
+
+
+FRAMES = [frames.Frame(f"{i:06d}", i, i / 30, 1.0 + i, RANDOM.integers(0, 256, (6, 8, 3), np.uint8)) for i in range(3)]
+ENTRIES = [
+    Keyframe(view(name, x), (view("000009", 1.0), view("000003", -1.0)), 0.1, 3.0) for name, x in (("b", 0), ("a", 1))
+]
+CONSISTENCY = consistency.ConsistencyMap(
+    picture(), np.full((6, 8), np.inf, np.float32), *(RANDOM.integers(0, 9, (6, 8), np.uint8) for _ in range(3))
+)
+
+ARTIFACTS = [
+    Artifact(
+        "frames.zarr.zip",
+        FRAMES,
+        lambda path, value, header: frames.write_frames(path, value, header, ordered=True, source_shape=(12, 16)),
+        frames.read_frames,
+    ),
+    Artifact(
+        "calibration.json",
+        calibration.Calibration(CAMERA, 0.01, -0.002, 0.15, 25),
+        calibration.write_calibration,
+        calibration.read_calibration,
+    ),
+    Artifact(
+        "poses.json",
+        poses.Poses(
+            (view("a", 0.1), view("b", 0.7)),
+            ("c",),
+            (0.02, -0.001),
+            Similarity(2.5, np.eye(3), np.array([1.0, 2, 3])),
+            None,
+            {"turns": 1.5},
+        ),
+        poses.write_poses,
+        poses.read_poses,
+    ),
+    Artifact(
+        "points.zarr.zip",
+        SparsePoints(
+            RANDOM.random((4, 3)),
+            RANDOM.integers(0, 256, (4, 3), np.uint8),
+            RANDOM.random(4),
+            np.array([0, 0, 1, 2, 3]),
+            np.array([0, 1, 1, 0, 2]),
+        ),
+        points.write_points,
+        points.read_points,
+    ),
+    Artifact("keyframes.json", ENTRIES, keyframes.write_keyframes, keyframes.read_keyframes),
+    Artifact(
+        "semidense.zarr.zip",
+        depth_maps.Semidense(picture(), picture()),
+        depth_maps.write_semidense,
+        depth_maps.read_semidense,
+    ),
+    Artifact("edges.zarr.zip", picture(), depth_maps.write_edges, depth_maps.read_edges),
+    Artifact(
+        "depth.zarr.zip",
+        depth_maps.DepthMap(picture(), picture(), picture()),
+        depth_maps.write_depth_map,
+        depth_maps.read_depth_map,
+    ),
+    Artifact(
+        "consistency.zarr.zip",
+        [("a", CONSISTENCY), ("b", CONSISTENCY)],
+        consistency.write_consistency,
+        consistency.read_consistency,
+    ),
+    Artifact(
+        "volume.zarr.zip",
+        volumes.Volume(
+            VoxelGrid(np.array([0.5, -1, 2]), 0.1, (3, 4, 5)),
+            RANDOM.random((3, 4, 5)).astype(np.float32),
+            RANDOM.integers(0, 9, (3, 4, 5), np.uint8),
+        ),
+        volumes.write_volume,
+        volumes.read_volume,
+    ),
+    Artifact(
+        "support.json",
+        volumes.Support(Plane(np.array([0.0, -1, 0]), 0.25), np.zeros(3), np.ones(3), {"inliers": 0.5}),
+        volumes.write_support,
+        volumes.read_support,
+    ),
+    Artifact(
+        "silhouettes.zarr.zip",
+        {"000002": RANDOM.random((6, 8)) > 0.5, "000001": RANDOM.random((6, 8)) > 0.5},
+        volumes.write_silhouettes,
+        volumes.read_silhouettes,
+    ),
+]
+
+
+@pytest.fixture(params=ARTIFACTS, ids=lambda artifact: artifact.name)
+def artifact(request) -> Artifact:
+    """Each artifact that carries a schema."""
+    return request.param
+
+
+@pytest.fixture
+def header() -> dict:
+    """What a job puts into its artifacts."""
+    return HEADER
+
+
+@pytest.fixture
+def figures() -> list[metrics.Metric]:
+    """Rows of a table of metrics."""
+    return [
+        metrics.Metric("iou", 0.123456789, "1", "set", "mug", "fused_sdf", "000010"),
+        metrics.Metric("seconds", 12.0, "s"),
+    ]

@@ -1,0 +1,128 @@
+"""Geometry and search of one pixel."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from threedfs.geometry.projection import backproject, project
+from threedfs.params.semidense import SemidenseParams
+from threedfs.semidense.gradient import image_gradient, to_grey
+from threedfs.semidense.observe import FOUND, NOT_FOUND, NOT_SEARCHED, SearchRule, search_line
+from threedfs.semidense.pair import relate
+
+PARAMS = SemidenseParams()
+RULE = SearchRule(*(getattr(PARAMS, name) for name in SearchRule._fields))
+BOUNDS = (0.4, 2.5)
+
+
+def search(scene, u, v, low=BOUNDS[0], high=BOUNDS[1], neighbour=0, grey=None, other=None, other_valid=None, rule=RULE):
+    view, image = scene.neighbours[neighbour]
+    grey = to_grey(scene.image) if grey is None else grey
+    other = to_grey(image) if other is None else other
+    other_valid = np.ones(other.shape, bool) if other_valid is None else other_valid
+    pair = relate(scene.keyframe.view, view)
+    return search_line(grey, *image_gradient(grey), other, other_valid, u, v, low, high, BOUNDS, pair, rule)
+
+
+def search_many(scene, **given):
+    """Search a grid of pixels of the keyframe; return outcomes, found inverse depths, variances and the truth."""
+    rows, columns = np.mgrid[20:160:4, 20:220:4].reshape(2, -1)
+    results = [search(scene, u, v, **given) for u, v in zip(columns, rows, strict=True)]
+    outcome, found, variance = (np.array(part) for part in zip(*results, strict=True))
+    return outcome, found, variance, 1 / scene.depth[rows, columns]
+
+
+def test_pair_geometry_agrees_with_projection(make_scene):
+    """Oracle: transfer by homography and baseline equals back-projection and projection, cameras differing."""
+    scene = make_scene(neighbour_focal=260.0)
+    key, other = scene.keyframe.view, scene.keyframe.neighbours[3]
+    pair = relate(key, other)
+    pixels = np.array([[30.0, 40.0], [200.0, 17.0], [0.0, 0.0]])
+    inverse_depth = np.array([0.7, 1.1, 2.0])
+    homogeneous = np.c_[pixels, np.ones(3)] @ pair.infinite.T + inverse_depth[:, None] * pair.baseline
+    expected, _ = project(other, backproject(key, pixels, 1 / inverse_depth))
+    np.testing.assert_allclose(homogeneous[:, :2] / homogeneous[:, 2:], expected, rtol=1e-10)
+    centre, _ = project(key, other.centre[None])
+    if np.isfinite(centre).all():
+        np.testing.assert_allclose(pair.epipole[:2] / pair.epipole[2], centre[0], rtol=1e-9)
+
+
+@pytest.mark.parametrize("neighbour_focal", [200.0, 260.0])
+def test_found_depth_is_true(make_scene, neighbour_focal):
+    """Property: nearly every match is right within its own standard deviation; cameras may differ."""
+    scene = make_scene(neighbour_focal=neighbour_focal)
+    outcome, found, variance, truth = search_many(scene)
+    match = outcome == FOUND
+    assert match.mean() > 0.25
+    deviation = np.abs(found - truth)[match] / np.sqrt(variance[match])
+    # The variance allows for 4 grey levels of noise and half a pixel of line; this image has neither.
+    assert np.median(deviation) < 0.5
+    assert np.mean(deviation > 2) < 0.05
+
+
+def test_exposure_does_not_matter(make_scene):
+    """Property: 25 grey levels brighter, the same matches at the same depths."""
+    scene = make_scene(contrast=8.0)
+    other = to_grey(scene.neighbours[0][1])
+    plain, found, _, _ = search_many(scene)
+    brighter, found_brighter, _, _ = search_many(scene, other=other + 25)
+    np.testing.assert_array_equal(plain, brighter)
+    # float32 grey levels near 150 round at 1e-5, sub-pixel places follow.
+    np.testing.assert_allclose(found, found_brighter, rtol=1e-3)
+
+
+def test_gradient_along_the_line_is_needed(make_scene):
+    """Exact: stripes parallel to the (horizontal) epipolar lines say nothing about depth."""
+    scene = make_scene()
+    stripes = np.repeat((128 + 60 * np.sin(np.arange(180) / 2)).astype(np.float32)[:, None], 240, axis=1)
+    assert search(scene, 120, 91, grey=stripes, other=stripes)[0] == NOT_SEARCHED
+
+
+def test_repetition_is_not_a_match(make_scene):
+    """Property: a periodic pattern has no distinct match on a long line, so none is reported."""
+    scene = make_scene()
+    stripes = np.repeat((128 + 60 * np.sin(2 * np.pi * np.arange(240) / 8)).astype(np.float32)[None], 180, axis=0)
+    outcomes = [search(scene, u, 90, grey=stripes, other=stripes, neighbour=2)[0] for u in range(80, 160)]
+    assert FOUND not in outcomes and NOT_FOUND in outcomes
+
+
+def test_different_content_is_not_a_match(make_scene):
+    """Property: an inverted neighbour has no place that differs by less than the limit."""
+    scene = make_scene()
+    outcome, *_ = search_many(scene, other=255 - to_grey(scene.neighbours[0][1]))
+    assert np.mean(outcome == FOUND) < 0.02
+
+
+def test_invalid_pixels_of_the_neighbour_are_not_matched(make_scene):
+    """Exact: with nothing valid in the neighbour there is no search."""
+    scene = make_scene()
+    outcome, found, *_ = search_many(scene, other_valid=np.zeros(scene.depth.shape, bool))
+    assert set(outcome) == {NOT_SEARCHED}
+    assert np.isnan(found).all()
+
+
+def test_a_longer_baseline_is_more_certain(make_scene):
+    """Property: at 9 degrees the variance is lower than at 3; alpha^2 falls with the baseline squared."""
+    scene = make_scene()
+    narrow, wide = search_many(scene, neighbour=0), search_many(scene, neighbour=4)
+    both = (narrow[0] == FOUND) & (wide[0] == FOUND)
+    ratio = np.median(narrow[2][both] / wide[2][both])
+    # (9 / 3)^2 = 9, but for the slightly different lines and steepness.
+    assert 6 < ratio < 13
+
+
+def test_variance_falls_with_contrast(make_scene):
+    """Property: the photometric part dominates at low contrast, so twice the contrast lowers the variance."""
+    low, high = search_many(make_scene(contrast=6.0)), search_many(make_scene(contrast=12.0))
+    both = (low[0] == FOUND) & (high[0] == FOUND)
+    assert np.median(high[2][both] / low[2][both]) < 0.8
+
+
+def test_the_end_of_the_segment_is_not_a_minimum(make_scene):
+    """Property: a segment that ends far before the true depth gives no match there."""
+    scene = make_scene()
+    outcome, found, _, truth = search_many(scene, low=1.6, high=2.4, neighbour=4)
+    wrong = (outcome == FOUND) & (np.abs(found / truth - 1) > 0.1)
+    # Truth is 0.8 to 1.0 here; among places that are all wrong few pass by chance.
+    assert wrong.mean() < 0.05

@@ -1,0 +1,169 @@
+"""A copy of the workflow whose stages are stand-ins."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from threedfs.params.document import FILES
+from threedfs.params.schema import declared_stages
+
+ROOT = Path(__file__).resolve().parents[2]
+BIN = Path(sys.executable).parent
+
+SIGNATURES = {
+    "calibrate": ("boards", "calibration", ""),
+    "frames": ("source masks", "frames", ""),
+    "poses": ("frames cameras calibration", "poses points", ""),
+    "undistort": ("frames poses", "undistorted", ""),
+    "keyframes": ("undistorted poses points masks", "keyframes", ""),
+    "semidense": ("undistorted keyframes poses points", "semidense", "keyframe"),
+    "edges": ("undistorted keyframes", "edges", "keyframe"),
+    "depth": ("undistorted keyframes semidense edges", "depth", "keyframe"),
+    "consistency": ("keyframes depth", "consistency", ""),
+    "fuse_scene": ("keyframes points depth consistency", "scene", ""),
+    "locate": ("scene keyframes points semidense", "support", ""),
+    "fuse_object": ("keyframes depth consistency support", "volume", ""),
+    "object": ("field support keyframes poses frames semidense", "mesh volume silhouettes masks", "method"),
+    "evaluate": (
+        "poses keyframes mesh masks depth frames masks_truth cameras_truth mesh_truth depth_truth",
+        "metrics",
+        "dataset sequence method",
+    ),
+    "collect": ("tables", "metrics", ""),
+}
+"""Inputs, outputs and wildcards of each stage: the contract between rules and stages."""
+
+TEMPLATE = '''"""Stand-in for a stage."""
+
+from threedfs.stages.stub import write
+
+{imports}
+def run({arguments}):
+    write("{stage}", {inputs}, {outputs}, {names}, {params}, job)
+'''
+
+
+class Project:
+    """A copy of the project in a folder of its own."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self.package = folder / "src" / "threedfs"
+
+    @property
+    def command(self) -> list[str]:
+        """The start of every command line."""
+        return [str(BIN / "snakemake"), "--cores", "2"]
+
+    @property
+    def environment(self) -> dict[str, str]:
+        """The environment in which the copy's package comes first."""
+        return {**os.environ, "PYTHONPATH": str(self.folder / "src"), "PATH": f"{BIN}:{os.environ['PATH']}"}
+
+    def run(self, *arguments: str, good: bool = True) -> str:
+        """Run snakemake and return all that it printed; fail unless it ended as expected."""
+        done = subprocess.run(
+            [*self.command, *arguments],
+            cwd=self.folder,
+            env=self.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            check=False,
+        )
+        assert (done.returncode == 0) is good, done.stdout
+        return done.stdout
+
+    def edit(self, path: str, old: str, new: str) -> None:
+        """Replace text in a file of the copy."""
+        file = self.folder / path
+        text = file.read_text()
+        assert old in text
+        file.write_text(text.replace(old, new, 1))
+
+    def artifacts(self) -> dict[str, bytes]:
+        """Read all results by relative path, without logs, benchmarks and the store."""
+        results = self.folder / "results"
+        files = (file for file in sorted(results.rglob("*")) if file.is_file())
+        names = ((file.relative_to(results), file) for file in files)
+        kept = ((name, file) for name, file in names if not {"logs", "benchmarks", ".store"} & set(name.parts))
+        return {name.as_posix(): file.read_bytes() for name, file in kept}
+
+
+@pytest.fixture(scope="session")
+def signatures() -> dict[str, tuple[str, str, str]]:
+    """Inputs, outputs and wildcards of each stage."""
+    return SIGNATURES
+
+
+@pytest.fixture
+def project(tmp_path: Path) -> Project:
+    """A project whose stages are stand-ins and whose sample is a few bytes."""
+    return make_project(tmp_path / "project")
+
+
+@pytest.fixture(scope="session")
+def first_run(tmp_path_factory) -> tuple[Project, str]:
+    """A project after its first run, and what that printed; not to be changed."""
+    project = make_project(tmp_path_factory.mktemp("finished") / "project")
+    return project, project.run()
+
+
+@pytest.fixture
+def finished(first_run, tmp_path: Path) -> Project:
+    """A copy of a project after its first run."""
+    shutil.copytree(first_run[0].folder, tmp_path / "project")
+    return Project(tmp_path / "project")
+
+
+def make_project(folder: Path) -> Project:
+    """Copy the project, with stand-ins for its stages and sample."""
+    for name in ("src/threedfs", "workflow", "config", "profiles", "envs"):
+        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+    shutil.copy(ROOT / "Snakefile", folder)
+    for name, make in FILES.items():  # in step even when the committed ones are not, which is another test's matter
+        (folder / name).write_text(make())
+    sample = folder / "resources" / "sample"
+    (sample / "masks").mkdir(parents=True)
+    for name in ("video.mp4", "cameras.json", "mesh.ply", "masks/000001.png"):
+        (sample / name).write_text(name)
+    write_stub_stages(folder / "src" / "threedfs", set(declared_stages()))
+    return Project(folder)
+
+
+def write_stub_stages(package: Path, with_params: set[str]) -> None:
+    """Replace the stages in a copy of the package by stand-ins; collect stays what it is.
+
+    Parameters
+    ----------
+    package : Path
+        Folder of the copy.
+    with_params : set of str
+        Stages that have parameters.
+    """
+    for stage, names in SIGNATURES.items():
+        if stage == "collect":
+            continue
+        inputs, outputs, wildcards = (text.split() for text in names)
+        params = ["params"] if stage in with_params else []
+        text = TEMPLATE.format(
+            stage=stage,
+            imports=f"import threedfs.params.{stage}\n\n" if params else "",
+            arguments="*, " + ", ".join([*inputs, *outputs, *wildcards, *params, "job"]),
+            inputs=_mapping(inputs),
+            outputs=_mapping(outputs),
+            names=_mapping(wildcards),
+            params="params" if params else None,
+        )
+        (package / "stages" / f"{stage}.py").write_text(text)
+    shutil.copy(Path(__file__).with_name("stub.py"), package / "stages" / "stub.py")
+
+
+def _mapping(names: list[str]) -> str:
+    return "{" + ", ".join(f'"{name}": {name}' for name in names) + "}"

@@ -1,0 +1,60 @@
+"""Rejection: a wrong configuration ends at once, with one sentence and a status that is not 0."""
+
+from __future__ import annotations
+
+import pytest
+
+CASES = {
+    "unknown key": ("colour: red", "unknown key colour"),
+    "unknown parameter": ("depth: {iteratons: 5}", "depth: unknown key iteratons"),
+    "wrong type": ("depth: {iterations: many}", "depth.iterations: expected integer, got 'many'"),
+    "out of range": ("depth: {iterations: -1}", "depth.iterations: expected at least 1, got -1"),
+    "no such choice": ("depth: {prior: third_order}", "depth.prior: expected one of first_order"),
+    "slash in name": ("sequences: {a/b: {source: config}}", "'a/b' cannot name a sequence"),
+    "space in name": ("sequences: {a b: {source: config}}", "'a b' cannot name a sequence"),
+    "no such file": (
+        "sequences: {mug: {source: mug.mp4}}",
+        "sequences.mug.source: expected a file or folder, found no",
+    ),
+    "no such mask": (
+        "sequences: {mug: {source: config, truth: {masks: m}}}",
+        "sequences.mug.truth.masks: expected a file or folder, found no m",
+    ),
+    "no source": ("sequences: {mug: {cameras: config}}", "sequences.mug: expected the key source"),
+    "unknown method": ("methods: [magic]", "methods.0: expected one of fused_sdf"),
+    "negative seed": ("seed: -1", "seed: expected at least 0, got -1"),
+}
+
+
+@pytest.mark.parametrize("case", CASES)
+def test_wrong_configuration_ends_with_one_sentence(project, case):
+    text, sentence = CASES[case]
+    (project.folder / "wrong.yaml").write_text(text + "\n")
+    output = project.run("--configfile", "wrong.yaml", good=False)
+    (line,) = (line for line in output.splitlines() if line.startswith("threedfs: "))
+    assert sentence in line
+    assert "Traceback" not in output
+    assert not (project.folder / "results").exists()
+
+
+def test_missing_video_ends_with_one_sentence(project):
+    output = project.run("--config", "video=nowhere.mp4", good=False)
+    assert "threedfs: video: expected a video file or a folder of photos, found no nowhere.mp4" in output
+
+
+def test_video_whose_name_cannot_name_a_sequence_is_refused(project):
+    (project.folder / "my mug.mp4").touch()
+    output = project.run("--config", "video=my mug.mp4", good=False)
+    assert "'my mug' cannot name a sequence" in output
+
+
+def test_what_a_stage_refuses_ends_the_run_with_its_sentence(project):
+    project.edit(
+        "src/threedfs/stages/frames.py",
+        "    write(",
+        "    from threedfs.errors import UserError\n    raise UserError('this is no video.')\n    write(",
+    )
+    output = project.run(good=False)
+    assert "Traceback" not in output
+    assert "threedfs: frames of sample: this is no video." in output.splitlines()
+    assert not (project.folder / "results/sample/01_frames/frames.zarr.zip").exists()

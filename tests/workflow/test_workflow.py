@@ -1,0 +1,145 @@
+"""Contract: what runs, what does not run again, and what a changed input, parameter or source file reruns."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shutil
+import signal
+import subprocess
+import time
+from collections import Counter
+
+RULES = (
+    "calibrate frames poses undistort keyframes semidense edges depth consistency fuse_scene locate fuse_object "
+    "object evaluate collect all"
+).split()
+
+
+def jobs_done(output: str) -> Counter:
+    """Count the jobs that computed, by stage."""
+    return Counter(re.findall(r"^(\w+) of .*: done in", output, re.MULTILINE))
+
+
+def jobs_taken(output: str) -> Counter:
+    """Count the jobs that the store answered, by stage."""
+    return Counter(re.findall(r"^(\w+) of .*: taken from the store in", output, re.MULTILINE))
+
+
+def test_lists_every_rule(project):
+    listed = project.run("--list-rules").split()
+    assert set(RULES) <= set(listed)
+
+
+def test_first_run_does_every_job_and_prints_the_summary(first_run):
+    project, output = first_run
+    once = set(RULES) - {"calibrate", "all", "semidense", "edges", "depth"}
+    assert jobs_done(output) == Counter({**dict.fromkeys(once, 1), "semidense": 2, "edges": 2, "depth": 2})
+    assert re.search(r"sample fused_sdf +0.500", output)
+    assert (project.folder / "results/metrics.csv").is_file()
+
+
+def test_second_run_does_nothing(finished):
+    assert "Nothing to be done" in finished.run()
+
+
+def test_wiped_results_are_taken_from_the_store_with_the_same_bytes(finished, first_run):
+    artifacts = finished.artifacts()
+    for path in (finished.folder / "results").iterdir():
+        if path.name != ".store":
+            shutil.rmtree(path) if path.is_dir() else path.unlink()
+    output = finished.run()
+    assert jobs_done(output) == Counter()
+    assert jobs_taken(output) == jobs_done(first_run[1])
+    assert finished.artifacts() == artifacts
+
+
+def test_changed_parameter_reruns_what_follows_and_flipped_back_nothing(finished):
+    (finished.folder / "other.yaml").write_text("depth: {iterations: 7}\n")
+    done = jobs_done(finished.run("--configfile", "other.yaml"))
+    assert done["depth"] == 2
+    assert set(done) == {"depth", "consistency", "fuse_scene", "locate", "fuse_object", "object", "evaluate"}
+    output = finished.run()
+    assert jobs_done(output) == Counter()
+    assert jobs_taken(output)["depth"] == 2
+
+
+def test_edited_source_reruns_its_stage_and_what_follows(finished):
+    finished.edit("src/threedfs/stages/fuse_object.py", "write(", "print(end='') or write(")
+    output = finished.run()
+    assert set(jobs_done(output)) == {"fuse_object"}  # its bytes are as before, so all that follows is a hit
+    assert not {"depth", "consistency", "fuse_scene", "locate"} & set(jobs_taken(output))
+
+
+def test_edited_comment_reruns_nothing(finished):
+    finished.edit("src/threedfs/stages/depth.py", '"""Stand-in for a stage."""', '"""Reworded."""  # and a comment')
+    assert "Nothing to be done" in finished.run()
+
+
+def test_touched_input_reruns_nothing_that_computes(finished):
+    (finished.folder / "resources/sample/video.mp4").touch()
+    assert jobs_done(finished.run()) == Counter()
+
+
+def test_cores_do_not_change_a_byte(finished):
+    first = finished.artifacts()
+    shutil.rmtree(finished.folder / "results")
+    finished.run("--cores", "1")
+    assert finished.artifacts() == first
+
+
+def test_photo_edited_in_place_is_noticed(project):
+    photos = project.folder / "photos"
+    photos.mkdir()
+    for name in ("a.jpg", "b.jpg"):
+        (photos / name).write_text(name)
+    order = ("results/photos/01_frames/frames.zarr.zip", "--config", "video=photos")
+    assert jobs_done(project.run(*order)) == Counter(frames=1)
+    assert "Nothing to be done" in project.run(*order)
+    (photos / "a.jpg").write_text("edited")
+    assert jobs_done(project.run(*order)) == Counter(frames=1)
+
+
+def test_given_cameras_and_calibration_reach_their_stages(project):
+    for name in ("shots", "cameras", "boards"):
+        (project.folder / name).mkdir()
+        (project.folder / name / "000001.txt").write_text(name)
+    entry = "{source: shots, cameras: cameras, calibration: boards, truth: {masks: shots}}"
+    (project.folder / "own.yaml").write_text(f"dataset: own\nsequences: {{mug: {entry}}}\n")
+    done = jobs_done(project.run("--configfile", "own.yaml"))
+    assert done["calibrate"] == 1 and done["evaluate"] == 1
+    poses = json.loads((project.folder / "results/mug/02_poses/poses.json").read_text())
+    assert all(poses["inputs"][name] is not None for name in ("frames", "cameras", "calibration"))
+    assert "own,mug,fused_sdf" in (project.folder / "results/metrics.csv").read_text()
+
+
+def test_killed_run_goes_on_to_the_same_bytes(finished):
+    whole = finished.artifacts()
+    shutil.rmtree(finished.folder / "results")
+    process = subprocess.Popen(
+        finished.command,
+        cwd=finished.folder,
+        env={**finished.environment, "STUB_PAUSE": "0.3"},
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+    )
+    scratch = finished.folder / "results/.store/scratch"
+    wait_for(lambda: any(scratch.glob(".*/depth/*")), process)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    assert any(scratch.iterdir()), "the job was not in the middle of its work"
+    finished.run("--unlock")
+    output = finished.run()
+    assert "poses" not in jobs_done(output) and jobs_done(output)["depth"] >= 1
+    assert finished.artifacts() == whole
+    assert not any(scratch.iterdir())
+
+
+def wait_for(condition, process, seconds=60):
+    """Wait until a condition holds while a process runs."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert process.poll() is None and time.monotonic() < end
+        time.sleep(0.01)

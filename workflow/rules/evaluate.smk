@@ -1,0 +1,67 @@
+# 12: measure against the ground truth, where there is any.
+
+
+rule evaluate:
+    input:
+        poses="results/{sequence}/02_poses/poses.json",
+        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        mesh="results/{sequence}/11_object/{method}/mesh.ply",
+        masks="results/{sequence}/11_object/{method}/masks",
+        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
+        frames="results/{sequence}/01_frames/frames.zarr.zip",
+        masks_truth=given("truth_masks"),
+        cameras_truth=given("truth_cameras"),
+        mesh_truth=given("truth_mesh"),
+        depth_truth=given("truth_depth"),
+    output:
+        metrics="results/{sequence}/12_evaluate/{method}/metrics.csv",
+    log:
+        "results/{sequence}/logs/evaluate/{method}.log",
+    benchmark:
+        "results/{sequence}/benchmarks/evaluate/{method}.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 1
+    resources:
+        mem_mb=2000,
+    params:
+        code=code_of("evaluate"),
+        settings=settings_of("evaluate"),
+        seed=config["seed"],
+        folders=fingerprint_of("truth_masks", "truth_cameras", "truth_depth"),
+        labels=lambda wildcards: {
+            "dataset": config["dataset"],
+            "sequence": wildcards.sequence,
+        },
+    message:
+        "Measure {wildcards.sequence} by {wildcards.method}."
+    script:
+        "../scripts/run_stage.py"
+
+
+rule collect:
+    input:
+        tables=expand(
+            "results/{sequence}/12_evaluate/{method}/metrics.csv",
+            sequence=SEQUENCES,
+            method=config["methods"],
+        ),
+    output:
+        metrics="results/metrics.csv",
+    log:
+        "results/logs/collect.log",
+    benchmark:
+        "results/benchmarks/collect.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 1
+    resources:
+        mem_mb=500,
+    params:
+        code=code_of("collect"),
+        settings=settings_of("collect"),
+        seed=config["seed"],
+    message:
+        "Collect the figures of all sequences."
+    script:
+        "../scripts/run_stage.py"

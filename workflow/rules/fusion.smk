@@ -1,0 +1,107 @@
+# 07: check the depth maps against each other, fuse them, find the object and fuse it finely.
+
+
+rule consistency:
+    input:
+        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
+    output:
+        consistency="results/{sequence}/07_fusion/consistency.zarr.zip",
+    log:
+        "results/{sequence}/logs/consistency.log",
+    benchmark:
+        "results/{sequence}/benchmarks/consistency.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 2
+    resources:
+        mem_mb=2000,
+    params:
+        code=code_of("consistency"),
+        settings=settings_of("consistency"),
+        seed=config["seed"],
+    message:
+        "Check the depth maps of {wildcards.sequence} against each other."
+    script:
+        "../scripts/run_stage.py"
+
+
+rule fuse_scene:
+    input:
+        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        points="results/{sequence}/02_poses/points.zarr.zip",
+        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
+        consistency="results/{sequence}/07_fusion/consistency.zarr.zip",
+    output:
+        scene="results/{sequence}/07_fusion/scene.zarr.zip",
+    log:
+        "results/{sequence}/logs/fuse_scene.log",
+    benchmark:
+        "results/{sequence}/benchmarks/fuse_scene.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 2
+    resources:
+        mem_mb=3000,
+    params:
+        code=code_of("fuse_scene"),
+        settings=settings_of("fuse_scene"),
+        seed=config["seed"],
+    message:
+        "Fuse the scene of {wildcards.sequence}."
+    script:
+        "../scripts/run_stage.py"
+
+
+rule locate:
+    input:
+        scene="results/{sequence}/07_fusion/scene.zarr.zip",
+        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        points="results/{sequence}/02_poses/points.zarr.zip",
+        semidense=per_keyframe("results/{sequence}/04_semidense/{keyframe}.zarr.zip"),
+    output:
+        support="results/{sequence}/07_fusion/support.json",
+    log:
+        "results/{sequence}/logs/locate.log",
+    benchmark:
+        "results/{sequence}/benchmarks/locate.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 1
+    resources:
+        mem_mb=2000,
+    params:
+        code=code_of("locate"),
+        settings=settings_of("locate"),
+        seed=config["seed"],
+    message:
+        "Find the support plane and the object of {wildcards.sequence}."
+    script:
+        "../scripts/run_stage.py"
+
+
+rule fuse_object:
+    input:
+        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
+        consistency="results/{sequence}/07_fusion/consistency.zarr.zip",
+        support="results/{sequence}/07_fusion/support.json",
+    output:
+        volume="results/{sequence}/07_fusion/object.zarr.zip",
+    log:
+        "results/{sequence}/logs/fuse_object.log",
+    benchmark:
+        "results/{sequence}/benchmarks/fuse_object.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 2
+    resources:
+        mem_mb=3000,
+    params:
+        code=code_of("fuse_object"),
+        settings=settings_of("fuse_object"),
+        seed=config["seed"],
+    message:
+        "Fuse the object of {wildcards.sequence}."
+    script:
+        "../scripts/run_stage.py"

@@ -1,0 +1,29 @@
+# 03: the one checkpoint; every list of keyframes comes from it.
+
+
+checkpoint keyframes:
+    input:
+        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
+        poses="results/{sequence}/02_poses/poses.json",
+        points="results/{sequence}/02_poses/points.zarr.zip",
+        masks=given("truth_masks"),
+    output:
+        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+    log:
+        "results/{sequence}/logs/keyframes.log",
+    benchmark:
+        "results/{sequence}/benchmarks/keyframes.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+    params:
+        code=code_of("keyframes"),
+        settings=settings_of("keyframes"),
+        seed=config["seed"],
+        folders=fingerprint_of("truth_masks"),
+    message:
+        "Choose the keyframes of {wildcards.sequence}."
+    script:
+        "../scripts/run_stage.py"

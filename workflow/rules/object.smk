@@ -1,0 +1,33 @@
+# 11: the object alone: closed mesh, silhouettes, masks.
+
+
+rule object:
+    input:
+        field="results/{sequence}/07_fusion/object.zarr.zip",
+        support="results/{sequence}/07_fusion/support.json",
+        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        poses="results/{sequence}/02_poses/poses.json",
+        frames="results/{sequence}/01_frames/frames.zarr.zip",
+        semidense=per_keyframe("results/{sequence}/04_semidense/{keyframe}.zarr.zip"),
+    output:
+        mesh="results/{sequence}/11_object/{method}/mesh.ply",
+        volume="results/{sequence}/11_object/{method}/volume.zarr.zip",
+        silhouettes="results/{sequence}/11_object/{method}/silhouettes.zarr.zip",
+        masks=directory("results/{sequence}/11_object/{method}/masks"),
+    log:
+        "results/{sequence}/logs/object/{method}.log",
+    benchmark:
+        "results/{sequence}/benchmarks/object/{method}.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 1
+    resources:
+        mem_mb=3000,
+    params:
+        code=code_of("object"),
+        settings=settings_of("object"),
+        seed=config["seed"],
+    message:
+        "Extract the object of {wildcards.sequence} by {wildcards.method}."
+    script:
+        "../scripts/run_stage.py"

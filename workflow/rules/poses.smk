@@ -1,0 +1,58 @@
+# 02: camera of every frame, sparse points, undistorted frames.
+
+
+rule poses:
+    input:
+        frames="results/{sequence}/01_frames/frames.zarr.zip",
+        cameras=given("cameras"),
+        calibration=branch(
+            lambda wildcards: SEQUENCES[wildcards.sequence]["calibration"] is not None,
+            then="results/{sequence}/01_frames/calibration.json",
+            otherwise=[],
+        ),
+    output:
+        poses="results/{sequence}/02_poses/poses.json",
+        points="results/{sequence}/02_poses/points.zarr.zip",
+    log:
+        "results/{sequence}/logs/poses.log",
+    benchmark:
+        "results/{sequence}/benchmarks/poses.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 2
+    resources:
+        mem_mb=3000,
+    params:
+        code=code_of("poses"),
+        settings=settings_of("poses"),
+        seed=config["seed"],
+        folders=fingerprint_of("cameras"),
+    message:
+        "Find the cameras of {wildcards.sequence}."
+    script:
+        "../scripts/run_stage.py"
+
+
+rule undistort:
+    input:
+        frames="results/{sequence}/01_frames/frames.zarr.zip",
+        poses="results/{sequence}/02_poses/poses.json",
+    output:
+        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
+    log:
+        "results/{sequence}/logs/undistort.log",
+    benchmark:
+        "results/{sequence}/benchmarks/undistort.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+    params:
+        code=code_of("undistort"),
+        settings=settings_of("undistort"),
+        seed=config["seed"],
+    message:
+        "Undistort the frames of {wildcards.sequence}."
+    script:
+        "../scripts/run_stage.py"

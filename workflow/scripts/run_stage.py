@@ -1,0 +1,25 @@
+"""Hand a rule's names to the stage of the same name; the only adapter."""
+# ruff: noqa: F821 (Snakemake defines `snakemake` in a script)
+
+from pathlib import Path
+
+from threedfs.store.command import run_job
+
+
+def as_paths(value):
+    """Return a path, a list of paths, or None for an optional input that is absent."""
+    return Path(value) if isinstance(value, str) else [Path(item) for item in value] or None
+
+
+run_job(
+    snakemake.rule,
+    {name: as_paths(value) for name, value in snakemake.input.items()},
+    {name: Path(value) for name, value in snakemake.output.items()},
+    snakemake.params.settings,
+    dict(snakemake.wildcards.items()),
+    snakemake.params.get("labels", {}),
+    store=Path(snakemake.config["store"]),
+    log=Path(snakemake.log[0]),
+    threads=snakemake.threads,
+    seed=snakemake.params.seed,
+)
