@@ -1,6 +1,5 @@
-# make demo   set everything up in .venv and reconstruct the sample
+# make demo   set everything up in .venv and reconstruct the sample; again: go on where a run was stopped or killed
 # make test   set everything up and run all tests
-# make resume go on after a run was killed
 # make config rewrite config/ from the parameters declared in src/threedfs/params/
 # make lock   rewrite the hashed pins from envs/requirements.in
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
@@ -9,7 +8,7 @@ BIN := .venv/bin
 PINS := $(shell cksum < envs/requirements.txt | tr ' ' '-')
 READY := .venv/.ready-$(PINS)
 
-.PHONY: demo test resume config lock setup
+.PHONY: demo test config lock setup
 
 demo: setup
 	$(BIN)/snakemake --cores $(CORES)
@@ -19,10 +18,6 @@ test: setup
 	$(BIN)/ruff format --check .
 	$(BIN)/snakefmt --check Snakefile workflow
 	$(BIN)/python -m pytest
-
-resume: setup
-	$(BIN)/snakemake --cores $(CORES) --unlock
-	$(BIN)/snakemake --cores $(CORES) --rerun-incomplete
 
 config: setup
 	$(BIN)/python -m threedfs.params.document

@@ -47,7 +47,6 @@ def test_every_direct_dependency_is_pinned():
     [
         ("demo", ["snakemake --cores 2"]),
         ("test", ["ruff check", "ruff format --check", "snakefmt --check", "pytest"]),
-        ("resume", ["--unlock", "--rerun-incomplete"]),
     ],
 )
 def test_make_sets_up_from_hashes_and_runs(target, commands, tmp_path):

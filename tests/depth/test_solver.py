@@ -24,6 +24,7 @@ SETTINGS = dict(
     tolerance=1e-6,
     early_tolerance=1e-4,
     max_steps=100,
+    break_bending=0.003,
 )
 
 
@@ -79,6 +80,7 @@ def test_second_order_priors_beat_the_first_on_a_slanted_blank_part(inputs):
         {"newton_rate": 0.0},
         {"smoothness": 0.01},
         {"smoothness_growth": 1.1},
+        {"break_bending": 0.0},
     ],
 )
 def test_every_parameter_acts(inputs, change):

@@ -6,7 +6,7 @@ import pytest
 from threedfs.errors import UserError
 from threedfs.fusion.fixation import find_fixation, find_up, viewing_distance
 from threedfs.fusion.region import scene_region
-from threedfs.fusion.support import SupportRule, find_support
+from threedfs.fusion.support import SupportRule, find_support, settle_support
 from threedfs.fusion.surface import zero_crossings
 from threedfs.geometry.grid import cover_box, voxel_centres
 from threedfs.geometry.plane import fit_plane
@@ -39,8 +39,11 @@ def scene(noise=0.004, wall_points=30000):
     return points, normals, centres
 
 
-def search(points, normals, centres, rule=RULE, up=UP):
-    return find_support(points, normals, centres, np.array([0, 0, 0.1]), up, rule, np.random.default_rng(0))
+NONE = np.empty((0, 3))
+
+
+def search(surface, normals, centres, rule=RULE, up=UP, points=NONE):
+    return find_support(surface, normals, points, centres, np.array([0, 0, 0.1]), up, rule, np.random.default_rng(0))
 
 
 def test_table_is_found_beside_a_dominant_wall():
@@ -61,6 +64,7 @@ def test_motion_of_the_world_moves_the_plane_with_it():
     there = find_support(
         points @ rotation.T + move[:3, 3],
         normals @ rotation.T,
+        NONE,
         centres @ rotation.T + move[:3, 3],
         rotation @ [0, 0, 0.1] + move[:3, 3],
         rotation @ UP,
@@ -84,6 +88,41 @@ def test_rough_surface_is_found_at_a_wider_tolerance():
     assert np.degrees(np.arccos(found.plane.normal @ UP)) < 6
     assert abs(found.plane.offset) < 0.06
     assert found.noise > 0.02
+
+
+def settle(found, heights):
+    rng = np.random.default_rng(2)
+    points = np.column_stack([rng.uniform(-0.6, 0.6, (len(heights), 2)), heights])
+    return settle_support(found, points, scene()[2], np.array([0, 0, 0.1]), UP, RULE, np.random.default_rng(0))
+
+
+def test_sunk_surface_is_lifted_onto_the_points():
+    """Property: a rough surface that the soft maximum sank gives way to points that agree on the floor."""
+    points, normals, centres = scene(noise=0.03)
+    sunk = search(points - 0.08 * UP, normals, centres)
+    rng = np.random.default_rng(0)
+    settled = settle(sunk, np.concatenate([rng.normal(0, 0.005, 2000), rng.uniform(0, 0.3, 500)]))
+    assert abs(settled.plane.offset) < 0.002  # 0.005 over the root of 2000 points, and the object's few beside
+    assert settled.noise < sunk.noise
+
+
+@pytest.mark.parametrize("heights", [np.zeros(20), np.random.default_rng(0).uniform(-0.2, 0.2, 3000)])
+def test_few_or_scattered_points_move_nothing(heights):
+    """Property: a plane found sharply in the surface stays."""
+    found = search(*scene(noise=0.002))
+    assert settle(found, heights) is found
+
+
+def test_points_tell_the_plane_where_the_surface_has_none():
+    """Property: a shattered surface leaves the plane to the points measured on the table and the object."""
+    rng = np.random.default_rng(0)
+    direction = rng.normal(size=(5000, 3))
+    direction /= np.linalg.norm(direction, axis=1, keepdims=True)
+    table_points = np.column_stack([rng.uniform(-0.6, 0.6, (3000, 2)), rng.normal(0, 0.005, 3000)])
+    object_points = np.array([0, 0, 0.15]) + rng.uniform(-0.15, 0.15, (3000, 3))
+    found = search(0.8 * direction, direction, scene()[2], points=np.concatenate([table_points, object_points]))
+    assert found.plane.normal @ UP > np.cos(np.radians(0.5))
+    assert abs(found.plane.offset) < 0.005
 
 
 def test_no_plane_is_told():
@@ -144,12 +183,13 @@ def test_up_is_found_however_the_phone_was_held(table, quarter_turns):
     assert find_up(views, np.array([0, 0, 0.2])) @ UP > 0.99
 
 
-def test_region_is_the_papers_but_for_far_points():
-    """Exact: median plus and minus two deviations, cut at the reach."""
-    points = np.random.default_rng(0).normal([1, 2, 3], [0.1, 0.2, 0.5], (1000, 3))
-    low, high = scene_region(points, 2.0, np.array([1.0, 2, 3]), reach=0.6)
+def test_region_is_the_papers_within_limits():
+    """Exact: median plus and minus two deviations, but not farther nor nearer than the reaches."""
+    points = np.random.default_rng(0).normal([1, 2, 3], [0.01, 0.2, 0.5], (1000, 3))
+    low, high = scene_region(points, 2.0, np.array([1.0, 2, 3]), least_reach=0.1, reach=0.6)
     centre, spread = np.median(points, axis=0), points.std(axis=0)
-    np.testing.assert_allclose(high[:2], (centre + 2 * spread)[:2])
+    np.testing.assert_allclose([low[0], high[0]], [0.9, 1.1])
+    np.testing.assert_allclose([low[1], high[1]], [centre[1] - 2 * spread[1], centre[1] + 2 * spread[1]])
     np.testing.assert_allclose([low[2], high[2]], [2.4, 3.6])
 
 
@@ -159,4 +199,4 @@ def test_region_is_the_papers_but_for_far_points():
 def test_region_rejects(points, sentence):
     """Rejection."""
     with pytest.raises(UserError, match=sentence):
-        scene_region(points, 2.0, np.zeros(3), 1.0)
+        scene_region(points, 2.0, np.zeros(3), 0.5, 1.0)

@@ -8,7 +8,9 @@ import pytest
 from threedfs.keyframes.neighbours import NeighbourRule, choose_neighbours, measure_pairs
 from threedfs.keyframes.visibility import Visibility
 
-RULE = NeighbourRule(count=10, min_count=4, min_angle=2.0, max_angle=12.0, widest_angle=35.0, min_overlap=0.3)
+RULE = NeighbourRule(
+    count=10, min_count=4, min_angle=2.0, max_angle=12.0, widest_angle=35.0, min_overlap=0.3, min_shared=5
+)
 
 
 def test_pairs_are_measured_on_the_ring(make_ring):
@@ -65,3 +67,25 @@ def test_frames_that_see_something_else_are_no_neighbours(make_ring):
 def test_a_frame_at_the_same_place_is_worth_nothing(make_ring):
     """Exact: without a baseline there is no depth, so a standing camera has no neighbours."""
     assert len(choose_neighbours(make_ring(count=6, turns=0).visibility, 0, RULE)) == 0
+
+
+def test_frames_of_another_pass_are_no_neighbours(make_ring):
+    """Property: a frame at a good angle that shares no triangulated point may have drifted, so it is passed over."""
+    ring = make_ring(count=72)
+    seen = ring.visibility.seen.copy()
+    seen[37, :] = False
+    visibility = Visibility(ring.visibility.centres, ring.visibility.xyz, ring.visibility.depth, seen)
+    assert 37 not in choose_neighbours(visibility, 36, RULE)
+
+
+def test_a_distant_background_does_not_hide_the_baseline(make_ring):
+    """Property: many points a hundred times farther away leave the angle that of the near ones."""
+    ring = make_ring(count=72)
+    far = np.array([0.0, 0.0, 100.0]) + np.random.default_rng(0).normal(size=(600, 3))
+    depth = np.hstack([ring.visibility.depth, np.full((72, 600), 100.0)])
+    seen = np.ones(depth.shape, bool)
+    xyz = np.vstack([ring.visibility.xyz, far])
+    _, angle = measure_pairs(Visibility(ring.visibility.centres, xyz, depth, seen), 0)
+    _, near_only = measure_pairs(ring.visibility, 0)
+    # The background weighs 600 / 100^2 against 200 / 1^2 of the near points: the median moves by one point at most.
+    np.testing.assert_allclose(angle, near_only, rtol=0.01, atol=1e-5)

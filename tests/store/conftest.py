@@ -57,6 +57,8 @@ def spawn(tmp_path: Path):
 
     def start(program: str) -> subprocess.Popen:
         program = f"import sys; sys.path.insert(0, {str(tmp_path / 'src')!r})\n{program}"
-        return subprocess.Popen([sys.executable, "-c", program], stdout=subprocess.PIPE, text=True)
+        return subprocess.Popen(
+            [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
 
     return start

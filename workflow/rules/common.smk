@@ -11,6 +11,7 @@ from threedfs.params.configuration import (
 )
 from threedfs.store.code import digest_code
 from threedfs.store.digests import InputDigests
+from threedfs.store.run_lock import take_over
 
 try:
     check_configuration(config, configuration_schema())
@@ -18,6 +19,7 @@ try:
 except UserError as fault:
     sys.exit(f"threedfs: {fault}")
 
+RUN_LOCK = take_over(Path(".snakemake")) if workflow.is_main_process else None
 STARTED = time.time()
 STORE_DIGESTS = InputDigests(Path(config["store"]) / "digests")
 

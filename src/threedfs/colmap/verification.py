@@ -15,6 +15,15 @@ from threedfs.colmap.graph import Matches, frame_number, write_graph
 from threedfs.colmap.lens import guess_colmap_camera, make_colmap_camera
 from threedfs.geometry.lens import Lens
 
+_FLAT = {
+    kind.value
+    for kind in (
+        pycolmap.TwoViewGeometryConfiguration.PLANAR,
+        pycolmap.TwoViewGeometryConfiguration.PANORAMIC,
+        pycolmap.TwoViewGeometryConfiguration.PLANAR_OR_PANORAMIC,
+    )
+}
+
 
 @dataclass(frozen=True)
 class Verified:
@@ -26,10 +35,13 @@ class Verified:
         Keypoint indices.
     second_from_first : (4, 4) float64 or None
         Relative pose, its translation without scale; None if the lens is unknown or the matches leave it open.
+    flat : bool
+        One homography explains the matches as well as an epipolar geometry does: no parallax.
     """
 
     matches: np.ndarray
     second_from_first: np.ndarray | None
+    flat: bool = False
 
 
 def verify_matches(
@@ -85,7 +97,9 @@ def verify_matches(
     for identity, geometry in zip(identities, geometries, strict=True):
         first, second = (frame_number(image) for image in pycolmap.pair_id_to_image_pair(identity))
         if len(geometry.inlier_matches):
-            verified[first, second] = Verified(np.array(geometry.inlier_matches, np.uint32), _relative_pose(geometry))
+            verified[first, second] = Verified(
+                np.array(geometry.inlier_matches, np.uint32), _relative_pose(geometry), geometry.config in _FLAT
+            )
     return dict(sorted(verified.items()))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numba import njit
@@ -69,6 +69,11 @@ def pose_problem(
         coarsen_diagonal(_pad(confidence, padded, 0.0)),
         coarsen_diagonal(_pad(measurement_weight, padded, 0.0)),
     )
+
+
+def replace_prior(problem: SurfaceProblem, weight: np.ndarray, prior: str) -> SurfaceProblem:
+    """Return the problem with another spatial smoothness weight (H, W)."""
+    return replace(problem, prior=coarsen_prior(_pad(weight, problem.padded, _PADDING_WEIGHT), prior))
 
 
 def solve_surface(

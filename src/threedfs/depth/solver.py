@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from threedfs.depth.linear_solve import pose_problem, solve_surface
+from threedfs.depth.bending import release_bends
+from threedfs.depth.linear_solve import pose_problem, replace_prior, solve_surface
 from threedfs.depth.search import search_depth
 from threedfs.depth.weights import coupling_schedule, smoothness_at
 
@@ -41,6 +42,7 @@ def optimise_depth(
     tolerance: float,
     early_tolerance: float,
     max_steps: int,
+    break_bending: float,
     note: Callable[[str], None] = lambda message: None,
 ) -> DepthSolution:
     """Minimise Eq. 2 by alternating Eqs. 5-7 and Eq. 8.
@@ -64,6 +66,9 @@ def optimise_depth(
     -----
     The search starts from the smoothest surface through the measurements and the most photo-consistent depths
     (a solve of Eq. 8 before the first iteration): the paper does not say from where.
+
+    Differs from the paper: from half of the iterations on, smoothing gives way where the surface bends sharply
+    (`release_bends`), which keeps the background from being drawn towards the object around its silhouette.
     """
     schedule = coupling_schedule(coupling, coupling_decay, iterations)
     problem = pose_problem(edge_weight, confidence, measurement_weight, prior)
@@ -71,6 +76,8 @@ def optimise_depth(
     depth = np.full(auxiliary_depth.shape, np.median(auxiliary_depth))
     residuals, steps = [], []
     for iteration in range(iterations + 1):
+        if break_bending > 0 and iteration > iterations // 2:
+            problem = replace_prior(problem, edge_weight * release_bends(depth, break_bending, prior), prior)
         if iteration:
             auxiliary_depth = search_depth(
                 cost_volume,

@@ -8,21 +8,22 @@ from threedfs.errors import UserError
 
 
 def scene_region(
-    points: np.ndarray, deviations: float, fixation: np.ndarray, reach: float
+    points: np.ndarray, deviations: float, fixation: np.ndarray, least_reach: float, reach: float
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the corners (low, high) of the region of interest (Sec. 3.4.1).
 
     It reaches `deviations` standard deviations of the points to both sides of their median, axis by axis.
 
-    Differs from the paper: it ends at `reach` from what the cameras look at, because points far behind the object
-    would make it so wide that the object is a few voxels.
+    Differs from the paper: along each axis it reaches at least `least_reach` and at most `reach` from what the
+    cameras look at. Points far behind the object would make the region so wide that the object is a few voxels;
+    points mostly on the floor would make it so low that a tall object is cut off.
 
     Parameters
     ----------
     points : (N, 3) float64, world
     deviations : float
     fixation : (3,) float64
-    reach : float
+    least_reach, reach : float
         Scene units.
 
     Raises
@@ -37,10 +38,11 @@ def scene_region(
         )
     centre = np.median(points, axis=0)
     spread = deviations * points.std(axis=0)
-    low, high = np.maximum(centre - spread, fixation - reach), np.minimum(centre + spread, fixation + reach)
-    if not np.all(low < high):
+    if not np.all(np.abs(centre - fixation) < spread + reach):
         raise UserError(
             "The cameras do not look at where the sparse points are; expected views of one object from around it; "
             "raise fuse_scene.region_reach or film the object in the middle of the picture."
         )
+    low = np.clip(centre - spread, fixation - reach, fixation - least_reach)
+    high = np.clip(centre + spread, fixation + least_reach, fixation + reach)
     return low, high

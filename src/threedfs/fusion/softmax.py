@@ -127,7 +127,7 @@ def estimate_fusion_memory(grid_shape: tuple[int, int, int], image_shape: tuple[
     Examples
     --------
     >>> estimate_fusion_memory((200, 200, 200), (480, 640)) // 10**6
-    183
+    182
     """
     bytes_per_voxel = 8 + 8 + 4 + 1
     bytes_per_pixel = 8 * 6

@@ -11,6 +11,7 @@ from threedfs.geometry.plane import fit_plane, propose_planes, score_planes
 from threedfs.types import Plane
 
 _FACING = np.cos(np.radians(45))  # a point lies on a plane if its normal is so near the plane's
+_FEWEST = 100  # points from which they may tell the plane
 _SAMPLE = 4000  # surface points on which candidate planes are compared
 
 
@@ -65,27 +66,33 @@ class SupportPlane:
 
 
 def find_support(
-    points: np.ndarray,
+    surface: np.ndarray,
     normals: np.ndarray,
+    points: np.ndarray,
     centres: np.ndarray,
     fixation: np.ndarray,
     up: np.ndarray,
     rule: SupportRule,
     generator: np.random.Generator,
 ) -> SupportPlane:
-    """Find the plane under the object among points of the fused surface.
+    """Find the plane under the object among points of the fused surface, or else among the semi-dense points.
 
     Candidates are planes through three upward-facing points. Each scores by the nearby surface that lies on it
     and faces its way, times the cosine between its normal and `up`, less the nearby surface that lies below it:
     a table's top has nothing below, a box's top has the table. Cameras must be on its positive side.
+
+    Where the fused surface has no plane, or a rough one that the semi-dense points tell more sharply, theirs is
+    taken (`settle_support`).
 
     Differs from the paper: Sec. 3.4.1 fits one plane to all points of the zero level surface, which takes a
     wall, or a compromise, where the floor is not the largest surface.
 
     Parameters
     ----------
-    points, normals : (N, 3) float64
+    surface, normals : (N, 3) float64
         Of the zero level surface, normals toward empty space.
+    points : (M, 3) float64
+        Semi-dense points.
     centres : (K, 3) float64
         Camera centres.
     fixation, up : (3,) float64
@@ -95,13 +102,34 @@ def find_support(
     Raises
     ------
     UserError
-        If no plane reaches `rule.min_share`.
+        If no plane reaches `rule.min_share`, neither of the surface nor of the points.
     """
+    found, share = _widen(surface, normals, centres, fixation, up, rule, generator)
+    if found is not None:
+        return settle_support(found, points, centres, fixation, up, rule, generator)
+    found, points_share = _widen(points, np.broadcast_to(up, points.shape), centres, fixation, up, rule, generator)
+    if found is not None:
+        return found
+    raise UserError(_explain(max(share, points_share), rule))
+
+
+def _widen(
+    points: np.ndarray,
+    normals: np.ndarray,
+    centres: np.ndarray,
+    fixation: np.ndarray,
+    up: np.ndarray,
+    rule: SupportRule,
+    generator: np.random.Generator,
+) -> tuple[SupportPlane | None, float]:
+    """Search at wider and wider tolerance; return the first plane with enough share, and the best share met."""
+    if len(points) < _FEWEST:
+        return None, 0.0
     weights = np.exp(-((points - fixation) ** 2).sum(axis=1) / (2 * rule.reach**2))
     upward = normals @ up > np.cos(np.radians(rule.max_tilt))
-    if not (weights * upward).sum() > 0:
-        raise UserError(_explain(0.0, rule))
     best = 0.0
+    if not (weights * upward).sum() > 0:
+        return None, best
     for doubling in range(rule.doublings + 1):
         tolerance = rule.tolerance * 2**doubling
         plane = _search(points, normals, weights, centres, up, tolerance, rule, generator)
@@ -112,8 +140,51 @@ def find_support(
         best = max(best, share)
         if share >= rule.min_share:
             noise = 1.4826 * float(np.median(np.abs(plane.distance(points[on]))))
-            return SupportPlane(plane, share, noise, float(points[on].std(axis=0).mean()))
-    raise UserError(_explain(best, rule))
+            return SupportPlane(plane, share, noise, float(points[on].std(axis=0).mean())), best
+    return None, best
+
+
+def settle_support(
+    found: SupportPlane,
+    points: np.ndarray,
+    centres: np.ndarray,
+    fixation: np.ndarray,
+    up: np.ndarray,
+    rule: SupportRule,
+    generator: np.random.Generator,
+) -> SupportPlane:
+    """Move the support onto semi-dense points near it, where these tell it more sharply than the fused surface.
+
+    Where depth is uncertain, as on a floor without texture, the soft maximum sinks the surface below the floor
+    by the largest error of any view; the few points measured there do not sink.
+
+    Parameters
+    ----------
+    found : SupportPlane
+    points : (N, 3) float64
+        Semi-dense points.
+    centres, fixation, up, rule, generator
+        As for `find_support`.
+
+    Returns
+    -------
+    SupportPlane
+        `found` itself where too few points agree on a plane near it, or scatter more than the surface does.
+    """
+    near = points[np.abs(found.plane.distance(points)) < 4 * found.noise + rule.tolerance]
+    if len(near) < _FEWEST:
+        return found
+    weights = np.exp(-((near - fixation) ** 2).sum(axis=1) / (2 * rule.reach**2))
+    normals = np.broadcast_to(found.plane.normal, near.shape)
+    plane = _search(near, normals, weights, centres, up, rule.tolerance, rule, generator)
+    if plane is None:
+        return found
+    on = _lies_on(plane, near, normals, rule.tolerance)
+    noise = 1.4826 * float(np.median(np.abs(plane.distance(near[on]))))
+    share = float((weights * on).sum() / weights.sum())
+    if share < rule.min_share or noise > found.noise:
+        return found
+    return SupportPlane(plane, share, noise, float(near[on].std(axis=0).mean()))
 
 
 def _search(

@@ -19,6 +19,7 @@ class NeighbourRule:
     max_angle: float
     widest_angle: float
     min_overlap: float
+    min_shared: int
 
 
 def measure_pairs(visibility: Visibility, keyframe: int) -> tuple[np.ndarray, np.ndarray]:
@@ -53,7 +54,8 @@ def choose_neighbours(visibility: Visibility, keyframe: int, rule: NeighbourRule
 
     A frame is worth its overlap, less where its triangulation angle lies outside min_angle .. max_angle, and less
     the nearer it is to a neighbour already chosen; so they spread over both sides of a video's path, and over the
-    sphere of a photo set. Frames beyond widest_angle or under min_overlap serve only to reach min_count.
+    sphere of a photo set. Frames beyond widest_angle, under min_overlap or under min_shared serve only to reach
+    min_count.
 
     Returns
     -------
@@ -66,7 +68,8 @@ def choose_neighbours(visibility: Visibility, keyframe: int, rule: NeighbourRule
         overlap * np.minimum(angle / rule.min_angle, 1) * np.minimum(rule.max_angle / np.maximum(angle, 1e-9), 1) ** 2
     )
     worth[keyframe] = 0
-    fit = (angle <= rule.widest_angle) & (overlap >= rule.min_overlap)
+    shared = visibility.seen[:, visibility.seen[keyframe]].sum(axis=1)
+    fit = (angle <= rule.widest_angle) & (overlap >= rule.min_overlap) & (shared >= rule.min_shared)
     # Offsets of the centres on the sphere of angles: along the baseline, as long as the triangulation angle.
     baseline = visibility.centres - visibility.centres[keyframe]
     offset = baseline * (angle / np.maximum(np.linalg.norm(baseline, axis=1), 1e-12))[:, None]

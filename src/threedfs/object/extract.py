@@ -33,7 +33,8 @@ def extract_surface(sdf: np.ndarray, grid: VoxelGrid) -> Mesh:
         raise UserError("The object's field is positive everywhere, so it has no surface; lower object.clearance.")
     away = np.where(sdf < 0, np.minimum(sdf, -_LEAST), np.maximum(sdf, _LEAST))
     padded = np.pad(away, 1, constant_values=1)
-    vertices, faces, _, _ = marching_cubes(padded, 0.0, gradient_direction="ascent")
+    # Lewiner's variant, the default, puts four triangles on an edge where clipped values tie.
+    vertices, faces, _, _ = marching_cubes(padded, 0.0, gradient_direction="ascent", method="lorensen")
     vertices = grid.origin + grid.spacing * (vertices.astype(np.float64) - 1)
     faces = faces.astype(np.int64)
     if enclosed_volume(Mesh(vertices, faces)) < 0:

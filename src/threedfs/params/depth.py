@@ -38,7 +38,7 @@ class DepthParams:
         minimum=0,
         maximum=1,
     )
-    iterations: int = parameter(10, "rounds of search and smoothing", minimum=1, maximum=33)
+    iterations: int = parameter(8, "rounds of search and smoothing", minimum=1, maximum=33)
     photometric_weight: float = parameter(
         100.0, "weight of the photometric error in the search", symbol="lambda_c", equation="Eq. 6", exclusive_minimum=0
     )
@@ -50,7 +50,7 @@ class DepthParams:
         exclusive_minimum=0,
     )
     coupling_decay: float = parameter(
-        0.08,
+        0.1,
         "how fast coupling tightens; decay times iterations must stay below 1",
         symbol="beta",
         equation="Eq. 10",
@@ -83,13 +83,19 @@ class DepthParams:
         exclusive_minimum=0,
     )
     smoothness_growth: float = parameter(
-        2.2, "its factor from one iteration to the next", symbol="gamma", equation="Eq. 9", minimum=1
+        2.6, "its factor from one iteration to the next", symbol="gamma", equation="Eq. 9", minimum=1
     )
     edge_falloff: float = parameter(
-        1.0, "how much an image edge weakens smoothing (paper: 5)", symbol="c_edge", equation="Eq. 9", minimum=0
+        4.0, "how much an image edge weakens smoothing (paper: 5)", symbol="c_edge", equation="Eq. 9", minimum=0
+    )
+    break_bending: float = parameter(
+        0.003,
+        "relative bend at which smoothing is halved, so that depth discontinuities open; 0 for never (paper)",
+        unit="1/px^2",
+        minimum=0,
     )
     confidence_falloff: float = parameter(
-        20.0,
+        10.0,
         "how fast trust falls with the least photometric error (paper: 5)",
         symbol="c_conf",
         equation="Eq. 11",

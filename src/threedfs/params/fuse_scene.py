@@ -19,6 +19,12 @@ class FuseSceneParams(FusionSettings):
         equation="Sec. 3.4.1",
         exclusive_minimum=0.0,
     )
+    region_least_reach: float = parameter(
+        0.5,
+        "the region of interest holds all that is so near what the cameras look at",
+        unit="viewing distance",
+        minimum=0.0,
+    )
     region_reach: float = parameter(
         1.0,
         "the region of interest ends at this distance from what the cameras look at",

@@ -49,6 +49,11 @@ class KeyframesParams:
         minimum=0.0,
         maximum=1.0,
     )
+    min_shared: int = parameter(
+        5,
+        "points triangulated from both, below which a frame is no neighbour: two passes of a long path drift apart",
+        minimum=0,
+    )
     near_factor: float = parameter(
         0.55,
         "near end of the depth range over the 1st percentile of the sparse depths",

@@ -20,6 +20,7 @@ class PosesParams:
     )
     min_features: int = parameter(50, "least median number of keypoints of a frame", minimum=8)
     overlap: int = parameter(8, "a frame of a video is matched with so many following ones", minimum=1)
+    gap_overlap: int = parameter(24, "the same where some frames got no pose, to match over blurred ones", minimum=1)
     max_ratio: float = parameter(
         0.8, "largest ratio of the nearest to the second nearest descriptor's angle", exclusive_minimum=0, maximum=1
     )
@@ -90,6 +91,10 @@ class PosesParams:
     )
     min_points: int = parameter(500, "with fewer points, those that only two frames see are kept", minimum=0)
     least_points: int = parameter(50, "given cameras: least number of points to go on with", minimum=1)
+    min_agreement: float = parameter(
+        0.5, "given cameras: least share of the matches that agree with them", minimum=0, maximum=1
+    )
+    max_flat_share: float = parameter(0.98, "largest share of pairs of frames without parallax", minimum=0, maximum=1)
     min_motion: float = parameter(
         3.0, "least motion of the image between frames, or the camera is called static", unit="pixel", minimum=0
     )

@@ -20,7 +20,8 @@ def step_ratio(times: np.ndarray, cam_from_world: np.ndarray, spacing: float) ->
     cam_from_world : (N, 4, 4) float64
         In order of time.
     spacing : float
-        Seconds between two samples of the path; at least the median spacing of `times`.
+        Seconds between two samples of the path; less in a video too short for eight steps, and at least the
+        median spacing of `times`.
 
     Returns
     -------
@@ -31,7 +32,7 @@ def step_ratio(times: np.ndarray, cam_from_world: np.ndarray, spacing: float) ->
     if len(times) < 3:
         return float("nan")
     centres = camera_centres(cam_from_world)
-    spacing = max(spacing, float(np.median(np.diff(times))))
+    spacing = max(min(spacing, (times[-1] - times[0]) / 8), float(np.median(np.diff(times))))
     count = int(np.floor((times[-1] - times[0]) / spacing + 1e-6))
     samples = times[0] + spacing * np.arange(count + 1)
     path = np.stack([np.interp(samples, times, centres[:, axis]) for axis in range(3)], axis=1)

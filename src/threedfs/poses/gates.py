@@ -49,6 +49,24 @@ def check_motion(features: Sequence[Features], verified: Mapping[tuple[int, int]
     return motion
 
 
+def check_parallax(verified: Mapping[tuple[int, int], Verified], largest_flat_share: float) -> float:
+    """Return the share of pairs that one homography explains.
+
+    Raises
+    ------
+    UserError
+        If it is over `largest_flat_share`: the camera turns on the spot.
+    """
+    flat = float(np.mean([pair.flat for pair in verified.values()])) if verified else 0.0
+    if flat > largest_flat_share:
+        raise UserError(
+            f"poses: expected at least {1 - largest_flat_share:.0%} of the pairs of frames to show parallax, got "
+            f"{1 - flat:.0%}: the camera turns on the spot, or nothing but one plane is in view; walk around the "
+            "object while filming."
+        )
+    return flat
+
+
 def check_mapped(mapped: Mapped | None, verified_pairs: int) -> Mapped:
     """Return what the mapper made.
 
@@ -78,6 +96,24 @@ def check_points(points: int, least: int) -> None:
             f"poses: expected at least {least} points from the given cameras, got {points}: the cameras do not fit "
             "the images; check their names, axes, direction (camera to world) and the size of the images."
         )
+
+
+def check_agreement(agreeing: int, matches: int, least_share: float) -> float:
+    """Return the share of matches that agree with the epipolar geometry of given cameras.
+
+    Raises
+    ------
+    UserError
+        If it is under `least_share`: they are not the cameras of these images.
+    """
+    share = agreeing / max(matches, 1)
+    if share < least_share:
+        raise UserError(
+            f"poses: expected at least {least_share:.0%} of the matches to agree with the given cameras, got "
+            f"{share:.0%} of {matches}: the cameras do not fit the images; check their names, axes, direction (camera "
+            "to world) and the size of the images."
+        )
+    return share
 
 
 def check_registered(posed: int, frames: int, least_share: float) -> float:

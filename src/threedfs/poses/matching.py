@@ -85,7 +85,7 @@ def _mutual_nearest(similarity, max_ratio, max_angle):
             continue
         angle = np.arccos(min(row_value[i] / _LENGTH2, 1.0))
         rival = np.arccos(min(max(row_second[i], column_second[j]) / _LENGTH2, 1.0))
-        if angle <= max_angle and angle <= max_ratio * rival:
+        if angle <= max_angle and angle < max_ratio * rival:
             matches[count, 0] = i
             matches[count, 1] = j
             count += 1

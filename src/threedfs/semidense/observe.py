@@ -74,9 +74,6 @@ def _refine(differences, place):
     return shift, max(here - 0.25 * (before - after) * shift, 0.0)
 
 
-FLOOR = 1.0
-
-
 @njit(cache=True)
 def search_line(grey, gradient_u, gradient_v, other, other_valid, u, v, low, high, bounds, geometry, rule):
     """Search the inverse depth of one pixel between `low` and `high`.

@@ -71,6 +71,7 @@ def run(
         smoothness_growth=params.smoothness_growth,
         tolerance=params.tolerance,
         early_tolerance=params.early_tolerance,
+        break_bending=params.break_bending,
         max_steps=params.max_steps,
         note=job.progress.note,
     )

@@ -35,8 +35,15 @@ def run(
     views = [entry.view for entry in entries.values()]
     xyz = read_points(points).xyz
     fixation = find_fixation(views, np.median(xyz, axis=0))
-    reach = params.region_reach * viewing_distance(views, fixation)
-    grid = cover_box(*scene_region(xyz, params.region_deviations, fixation, reach), params.longest_side)
+    distance = viewing_distance(views, fixation)
+    region = scene_region(
+        xyz,
+        params.region_deviations,
+        fixation,
+        params.region_least_reach * distance,
+        params.region_reach * distance,
+    )
+    grid = cover_box(*region, params.longest_side)
     fused = SoftMaximum(
         grid,
         params.clip_distance * grid.spacing,

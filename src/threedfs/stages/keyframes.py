@@ -62,6 +62,7 @@ def run(
         max_angle=params.max_angle,
         widest_angle=params.widest_angle,
         min_overlap=params.min_overlap,
+        min_shared=params.min_shared,
     )
     entries = []
     for frame in job.progress.track(chosen, "keyframes"):

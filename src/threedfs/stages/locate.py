@@ -20,6 +20,8 @@ from threedfs.object.component import choose_component, mark_points
 from threedfs.object.field import height_above
 from threedfs.params.locate import LocateParams
 
+_SAMPLE = 4000  # semi-dense points of a keyframe that take part in the search for the plane
+
 
 def run(
     *,
@@ -46,19 +48,22 @@ def run(
         min_share=params.plane_min_share,
         candidates=params.plane_candidates,
     )
+    generator = np.random.default_rng(job.seed)
+    sample, holds = [], np.zeros(grid.shape, bool)
+    for cloud in read_semidense_points(entries, semidense, params.point_deviation):
+        mark_points(grid, cloud, holds)
+        sample.append(generator.choice(cloud, min(len(cloud), _SAMPLE), replace=False))
     found = find_support(
         *zero_crossings(grid, volume.sdf, volume.seen),
+        np.concatenate(sample),
         centres=np.stack([view.centre for view in views]),
         fixation=fixation,
         up=find_up(views, fixation),
         rule=rule,
-        generator=np.random.default_rng(job.seed),
+        generator=generator,
     )
     height = height_above(found.plane, grid)
     high = height > params.clearance * grid.spacing
-    holds = np.zeros(grid.shape, bool)
-    for cloud in read_semidense_points(entries, semidense, params.point_deviation):
-        mark_points(grid, cloud, holds)
     chosen = choose_component(
         (volume.sdf < 0) & (volume.seen > 0) & high,
         grid,

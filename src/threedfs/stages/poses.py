@@ -24,10 +24,12 @@ from threedfs.poses.closures import accept_closures, closure_candidates, predict
 from threedfs.poses.continuity import step_ratio, turns_around
 from threedfs.poses.epipolar import agreeing_matches
 from threedfs.poses.gates import (
+    check_agreement,
     check_continuity,
     check_features,
     check_mapped,
     check_motion,
+    check_parallax,
     check_points,
     check_quality,
     check_registered,
@@ -91,17 +93,20 @@ def _triangulate_given(
     lenses = {number: fit_lens(camera.lens, store.source_shape, store.shape) for number, camera in found.items()}
     poses = {number: camera.cam_from_world for number, camera in found.items()}
     pairs = overlapping_pairs(poses, max_angle=np.radians(params.pair_angle), most=params.pairs_per_frame)
+    every = _match(features, pairs, params, job)
     matches = agreeing_matches(
         [frame.pixels for frame in features],
-        _match(features, pairs, params, job),
+        every,
         lenses,
         poses,
         max_error=params.max_match_error,
         min_matches=params.min_matches,
     )
+    agreement = check_agreement(sum(map(len, matches.values())), sum(map(len, every.values())), params.min_agreement)
+    job.progress.note(f"{agreement:.0%} of the matches of {len(pairs)} pairs agree with the given cameras")
     model = triangulate(features, matches, lenses, poses, seed=job.seed)
     points = _good_points(model.points, poses, params)
-    quality = {"registered": len(poses), **measure_points(points, poses)}
+    quality = {"registered": len(poses), "agreement": agreement, **measure_points(points, poses)}
     check_points(len(points.xyz), params.least_points)
     return Solved(lenses, poses, points, quality)
 
@@ -117,12 +122,19 @@ def _estimate(
     pairs = sequential_pairs(count, params.overlap) if store.ordered else exhaustive_pairs(count)
     verified = _verify(store, features, pairs, lens, params, job)
     motion = check_motion(features, verified, params.min_motion)
-    job.progress.note(f"{len(verified)} of {len(pairs)} pairs of frames verified")
+    flat_share = check_parallax(verified, params.max_flat_share)
+    job.progress.note(f"{len(verified)} of {len(pairs)} pairs of frames verified, {flat_share:.0%} without parallax")
     mapped = check_mapped(_map(store, features, verified, lens, params, job), len(verified))
+    if store.ordered and len(mapped.model.cam_from_world) < count:
+        job.progress.note("some frames have no pose: matching over gaps")
+        wider = sorted(set(sequential_pairs(count, params.gap_overlap)) - set(pairs))
+        verified = verified | _verify(store, features, wider, lens, params, job)
+        mapped = _map_again(store, features, mapped, verified, lens, params, job)
     closures = {}
     if store.ordered and params.closures:
         closures = _find_closures(store, features, mapped, params, job)
-        mapped = _close_loops(store, features, mapped, verified | closures, lens, params, job) if closures else mapped
+        if closures:
+            mapped = _map_again(store, features, mapped, verified | closures, lens, params, job)
     poses = mapped.model.cam_from_world
     job.progress.note(f"{len(poses)} of {count} frames posed, in parts of {', '.join(map(str, mapped.parts))}")
     points = _good_points(mapped.model.points, poses, params)
@@ -130,6 +142,7 @@ def _estimate(
         "registered": len(poses),
         "registered_share": check_registered(len(poses), count, params.min_registered),
         "largest_motion": motion,
+        "flat_share": flat_share,
         "closures": len(closures),
         **measure_points(points, poses),
     }
@@ -173,21 +186,21 @@ def _find_closures(
     return closures
 
 
-def _close_loops(
+def _map_again(
     store: FrameStore,
     features: Sequence[Features],
-    open_path: Mapped,
+    first: Mapped,
     verified: Mapping[tuple[int, int], Verified],
     lens: Lens | None,
     params: PosesParams,
     job: Job,
 ) -> Mapped:
-    closed = _map(store, features, verified, lens, params, job)
-    before = open_path.model.cam_from_world
-    if closed is None or not stays_on_path(before, closed.model.cam_from_world, np.radians(params.closure_rotation)):
-        job.progress.note("closing the loops bends the path: the open path is kept")
-        return open_path
-    return closed
+    again = _map(store, features, verified, lens, params, job)
+    tolerance = np.radians(params.closure_rotation)
+    if again is None or not stays_on_path(first.model.cam_from_world, again.model.cam_from_world, tolerance):
+        job.progress.note("with more pairs of frames the path bends: the first path is kept")
+        return first
+    return again
 
 
 def _verify(
