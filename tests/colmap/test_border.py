@@ -75,6 +75,16 @@ def test_features_do_not_depend_on_threads():
         assert left.descriptors.tobytes() == right.descriptors.tobytes()
 
 
+def test_the_largest_features_are_kept_and_no_more_than_asked_for():
+    rng = np.random.default_rng(4)
+    coarse = np.kron(rng.integers(0, 256, (12, 16)), np.ones((20, 20)))
+    image = np.repeat((0.7 * coarse + 0.3 * rng.integers(0, 256, coarse.shape))[..., None], 3, axis=2).astype(np.uint8)
+    (every,) = extract_features([image], max_features=5000, min_contrast=0.005, threads=1)
+    (some,) = extract_features([image], max_features=60, min_contrast=0.005, threads=1)
+    assert len(every.pixels) > 200 and len(some.pixels) == 60
+    assert {tuple(pixel) for pixel in some.pixels} <= {tuple(pixel) for pixel in every.pixels}
+
+
 def test_a_blank_image_has_no_features():
     (found,) = extract_features([np.full((60, 80, 3), 90, np.uint8)], max_features=9, min_contrast=0.005, threads=1)
     assert found.pixels.shape == (0, 2) and found.descriptors.shape == (0, 128)

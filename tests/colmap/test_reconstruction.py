@@ -59,6 +59,27 @@ def test_the_largest_part_is_taken_when_the_frames_split(orbit):
     assert sorted(mapped.model.cam_from_world) == list(range(4, 14))
 
 
+def test_mapping_goes_on_with_more_matches(orbit, matches):
+    started = map_orbit(orbit, {pair: found for pair, found in matches.items() if pair[1] < 10})
+    assert sorted(started.model.cam_from_world) == list(range(10))
+    more = map_frames(
+        orbit.features, matches, lens=None, min_inliers=15, min_inlier_share=0.15, start=started, **SETTINGS
+    )
+    assert sorted(more.model.cam_from_world) == list(range(14))
+    assert more.lens.camera.fx == pytest.approx(600, rel=0.01)
+
+
+def test_closing_a_loop_merges_the_tracks_of_both_rounds():
+    loop = make_orbit(24, 1.15, noise=0.3)
+    open_path = map_orbit(loop, true_matches(loop, sequential_pairs(24, 3)))
+    closures = true_matches(loop, sequential_pairs(24, 3) + [(frame, frame + 20) for frame in range(4)])
+    closed = map_frames(
+        loop.features, closures, lens=None, min_inliers=15, min_inlier_share=0.15, start=open_path, **SETTINGS
+    )
+    assert len(closed.model.points.xyz) < len(open_path.model.points.xyz)
+    assert len(closed.model.points.track_point) > 0.98 * len(open_path.model.points.track_point)
+
+
 def test_nothing_is_mapped_without_matches(orbit):
     assert map_orbit(orbit, {}) is None
 

@@ -75,15 +75,19 @@ def extract_features(
         )
         with pycolmap.Database.open(path) as database:
             # Ids follow the order in which threads finished: go by name.
-            return [_read(database, picture_folder / name) for name in names]
+            return [_read(database, picture_folder / name, max_features) for name in names]
 
 
-def _read(database: pycolmap.Database, path: Path) -> Features:
+def _read(database: pycolmap.Database, path: Path, max_features: int) -> Features:
     picture = database.read_image_with_name(path.name)
     if picture is None or not database.num_keypoints_for_image(picture.image_id):
         return Features(np.zeros((0, 2)), np.zeros((0, 128), np.uint8), np.zeros((0, 3), np.uint8))
-    pixels = px_from_colmap(database.read_keypoints(picture.image_id)[:, :2].astype(np.float64))
-    descriptors = np.array(database.read_descriptors(picture.image_id).data)
+    keypoints = database.read_keypoints(picture.image_id).astype(np.float64)
+    # COLMAP drops whole levels of scale only, and so leaves up to several times the number asked for.
+    size = np.hypot(keypoints[:, 2], keypoints[:, 4])
+    kept = np.sort(np.argsort(-size, kind="stable")[:max_features])
+    pixels = px_from_colmap(keypoints[kept, :2])
+    descriptors = np.array(database.read_descriptors(picture.image_id).data)[kept]
     image = cv2.imread(str(path))[..., ::-1]
     column, row = np.clip(np.rint(pixels).astype(int), 0, np.array(image.shape[1::-1]) - 1).T
     return Features(pixels, descriptors, image[row, column])

@@ -28,11 +28,14 @@ class Mapped:
         The camera that all frames share, as given or self-calibrated.
     parts : tuple of int
         Frames in every connected part, the largest first.
+    reconstruction : pycolmap.Reconstruction
+        The same as COLMAP holds it, to go on from.
     """
 
     model: Model
     lens: Lens
     parts: tuple[int, ...]
+    reconstruction: pycolmap.Reconstruction
 
 
 def map_frames(
@@ -46,6 +49,7 @@ def map_frames(
     min_inliers: int,
     min_inlier_share: float,
     seed: int,
+    start: Mapped | None = None,
 ) -> Mapped | None:
     """Estimate the poses of frames taken with one camera.
 
@@ -66,6 +70,9 @@ def map_frames(
         Least support by known points for the pose of a frame to be believed, at the second try; the first asks for
         COLMAP's own (30, 0.25).
     seed : int
+    start : Mapped, optional
+        Go on from this: its tracks are completed and merged by the matches, missing frames are registered, and all is
+        adjusted. Much faster than from nothing.
 
     Returns
     -------
@@ -77,22 +84,18 @@ def map_frames(
         database = Path(folder) / "graph.db"
         write_graph(database, [camera], features, matches, verified=True)
         options = _options(seed, refine=lens is None)
-        parts = _run(database, Path(folder) / "first", options)
+        parts = _run(database, Path(folder) / "first", options, start.reconstruction if start else None)
         if not parts:
             return None
         best = parts[0]
         if best.num_reg_images() < len(features):
             options.mapper.abs_pose_min_num_inliers = min_inliers
             options.mapper.abs_pose_min_inlier_ratio = min_inlier_share
-            options.multiple_models = False
-            start = Path(folder) / "start"
-            start.mkdir()
-            best.write(start)
-            again = _run(database, Path(folder) / "second", options, start)
+            again = _run(database, Path(folder) / "second", options, best)
             if again and again[0].num_reg_images() > best.num_reg_images():
                 best = again[0]
         sizes = (best.num_reg_images(), *(part.num_reg_images() for part in parts[1:]))
-        return Mapped(read_model(best, features), read_colmap_camera(best.cameras[1]), sizes)
+        return Mapped(read_model(best, features), read_colmap_camera(best.cameras[1]), sizes, best)
 
 
 def _options(seed: int, refine: bool) -> pycolmap.IncrementalPipelineOptions:
@@ -112,7 +115,17 @@ def _options(seed: int, refine: bool) -> pycolmap.IncrementalPipelineOptions:
     return options
 
 
-def _run(database: Path, output: Path, options, start: Path | str = "") -> list[pycolmap.Reconstruction]:
-    output.mkdir()
-    found = pycolmap.incremental_mapping(database, output, output, options, input_path=start)
+def _run(
+    database: Path,
+    folder: Path,
+    options: pycolmap.IncrementalPipelineOptions,
+    start: pycolmap.Reconstruction | None,
+) -> list[pycolmap.Reconstruction]:
+    (folder / "start").mkdir(parents=True)
+    options.multiple_models = start is None
+    if start is not None:
+        start.write(folder / "start")
+    found = pycolmap.incremental_mapping(
+        database, folder, folder, options, input_path=folder / "start" if start else ""
+    )
     return sorted(found.values(), key=lambda part: -part.num_reg_images())

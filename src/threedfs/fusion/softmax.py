@@ -7,13 +7,19 @@ import math
 import numba
 import numpy as np
 from numba import njit, prange
+from scipy.ndimage import gaussian_filter
 
 from threedfs.checks import check_shape
-from threedfs.fusion.view_sdf import clipped_distance, invert_depth, sample_inverse_depth
-from threedfs.types import View, VoxelGrid
+from threedfs.fusion.view_sdf import invert_depth, sample_inverse_depth
+from threedfs.geometry.projection import normals_from_depth, pixel_grid
+from threedfs.types import Camera, View, VoxelGrid
 
 UNSEEN = 1.0
 """Value of voxels that no view sees: not solid, and told from empty ones by `seen` being 0."""
+
+
+_FREE_RAMP = 3.0
+_NORMAL_SMOOTHING = 2.0  # standard deviation in pixels
 
 
 class SoftMaximum:
@@ -34,6 +40,13 @@ class SoftMaximum:
         Handicap of a vote without any confidence, in units of the clipped distance.
     discontinuity : float
         Relative step of inverse depth between neighbouring pixels above which they lie on different surfaces.
+    facing : float
+        Cosine between a surface's normal and the ray to it from which a vote is trusted fully; below it the trust
+        falls in proportion. Depth is worst where a surface turns away: the contour of a curved surface is another
+        curve in each view. 0 for the paper.
+    trust_blur : float
+        Standard deviation in pixels by which trust is smoothed: votes that change from pixel to pixel roughen
+        the surface. 0 for none.
     threads : int
         Cores used; the result does not depend on it.
     """
@@ -46,6 +59,8 @@ class SoftMaximum:
         *,
         distrust: float,
         discontinuity: float,
+        facing: float = 0.0,
+        trust_blur: float = 0.0,
         threads: int = 1,
     ) -> None:
         self.grid = grid
@@ -54,6 +69,8 @@ class SoftMaximum:
         self._seen = np.zeros(grid.shape, np.uint8)
         self._settings = (float(clip_distance), float(hardness), float(discontinuity))
         self._distrust = distrust
+        self._facing = facing
+        self._trust_blur = trust_blur
         self._threads = threads
 
     def add(
@@ -88,7 +105,12 @@ class SoftMaximum:
             if values is not None:
                 check_shape(values, shape, f"{name} of view {view.name}")
         hardness = self._settings[1]
-        weight = np.ones(shape) if confidence is None else np.exp(-hardness * self._distrust * (1.0 - confidence))
+        trust = np.ones(shape) if confidence is None else confidence.astype(np.float64)
+        if self._facing > 0:
+            trust = trust * np.clip(facing_cosine(view.camera, depth) / self._facing, 0.0, 1.0)
+        if self._trust_blur > 0:
+            trust = gaussian_filter(trust, self._trust_blur)
+        handicap = hardness * self._distrust * (1.0 - trust)
         free = np.zeros(shape, np.float32) if free_depth is None else free_depth.astype(np.float32)
         camera = view.camera
         numba.set_num_threads(max(1, min(self._threads, numba.config.NUMBA_NUM_THREADS)))
@@ -101,7 +123,7 @@ class SoftMaximum:
             view.px_from_world,
             np.array([camera.fx, camera.fy, camera.cx, camera.cy]),
             invert_depth(depth),
-            weight.astype(np.float64),
+            handicap,
             free,
             *self._settings,
         )
@@ -119,6 +141,21 @@ class SoftMaximum:
         sdf = np.full(self.grid.shape, UNSEEN, np.float32)
         np.divide(self._weighted, self._weight, out=sdf, where=self._seen > 0, casting="same_kind")
         return sdf, self._seen
+
+
+def facing_cosine(camera: Camera, depth: np.ndarray) -> np.ndarray:
+    """Return the cosine between the surface's normal and the viewing ray, (H, W) float64, 0 where undefined.
+
+    Normals are those of the depth smoothed over a few pixels: the turn of the surface counts, not its noise.
+    """
+    known = np.isfinite(depth)
+    smooth = gaussian_filter(np.where(known, depth, 0.0).astype(np.float64), _NORMAL_SMOOTHING)
+    share = gaussian_filter(known.astype(np.float64), _NORMAL_SMOOTHING)
+    smooth = np.divide(smooth, share, out=np.full(depth.shape, np.nan), where=share > 0.5)
+    u, v = pixel_grid(camera)
+    rays = np.stack([(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, np.ones_like(u)], axis=-1)
+    rays /= np.linalg.norm(rays, axis=-1, keepdims=True)
+    return np.nan_to_num(-(normals_from_depth(camera, smooth) * rays).sum(-1))
 
 
 def estimate_fusion_memory(grid_shape: tuple[int, int, int], image_shape: tuple[int, int]) -> int:
@@ -144,7 +181,7 @@ def _add_view(
     px_from_world,
     intrinsics,
     inverse_depth,
-    pixel_weight,
+    handicap,
     free_depth,
     clip_distance,
     hardness,
@@ -152,7 +189,6 @@ def _add_view(
 ):
     fx, fy, cx, cy = intrinsics[0], intrinsics[1], intrinsics[2], intrinsics[3]
     p = px_from_world
-    clipped_weight = math.exp(-2.0 * hardness)
     nx, ny, nz = seen.shape
     for ix in prange(nx):
         x = origin[0] + spacing * ix
@@ -169,15 +205,14 @@ def _add_view(
                 if math.isnan(inverse):
                     continue
                 ray_length = math.sqrt(((u - cx) / fx) ** 2 + ((v - cy) / fy) ** 2 + 1.0)
-                distance = clipped_distance(1.0 / inverse, voxel_depth, ray_length, clip_distance)
+                distance = (1.0 / inverse - voxel_depth) * ray_length / clip_distance
                 row, column = int(v + 0.5), int(u + 0.5)
+                penalty = handicap[row, column]
+                if distance > 1.0 and voxel_depth <= free_depth[row, column]:
+                    penalty *= max(0.0, 1.0 - (distance - 1.0) / _FREE_RAMP)
+                distance = min(1.0, max(-1.0, distance))
                 # The exponent is shifted by h so that it never grows above 0; the ratio stays the same.
-                if distance >= 1.0:
-                    vote = 1.0 if voxel_depth <= free_depth[row, column] else pixel_weight[row, column]
-                elif distance <= -1.0:
-                    vote = clipped_weight * pixel_weight[row, column]
-                else:
-                    vote = math.exp(hardness * (distance - 1.0)) * pixel_weight[row, column]
+                vote = math.exp(hardness * (distance - 1.0) - penalty)
                 weighted[ix, iy, iz] += vote * distance
                 weight[ix, iy, iz] += vote
                 if seen[ix, iy, iz] < 255:

@@ -15,7 +15,7 @@ class FusionSettings:
         200, "voxels along the longest side of the grid", unit="voxel", equation="Sec. 3.4.1", minimum=8, maximum=800
     )
     clip_distance: float = parameter(
-        4.0,
+        10.0,
         "distance from the surface at which a view's signed distance is clipped to 1",
         unit="voxel",
         symbol="mu",
@@ -23,7 +23,12 @@ class FusionSettings:
         exclusive_minimum=0.0,
     )
     softmax_hardness: float = parameter(
-        10.0, "0 makes the soft maximum over views a mean", symbol="h", equation="Eq. 15", minimum=0.0, maximum=100.0
+        4.0,
+        "0 makes the soft maximum over views a mean (paper: 10)",
+        symbol="h",
+        equation="Eq. 15",
+        minimum=0.0,
+        maximum=100.0,
     )
     weighting: str = parameter(
         "consistency",
@@ -41,4 +46,17 @@ class FusionSettings:
         0.02,
         "relative step of inverse depth between neighbouring pixels across which depth is not interpolated",
         minimum=0.0,
+    )
+    facing: float = parameter(
+        1.0,
+        "cosine between normal and ray from which a view's vote is trusted fully, less below; 0 for always (paper)",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    trust_blur: float = parameter(
+        4.0,
+        "standard deviation by which the trust in a view's pixels is smoothed; 0 for none (paper)",
+        unit="px",
+        minimum=0.0,
+        maximum=50.0,
     )

@@ -11,7 +11,7 @@ from threedfs.params.field import parameter
 class PosesParams:
     """What a user may set about camera poses and sparse points."""
 
-    max_features: int = parameter(4096, "most SIFT keypoints of a frame", minimum=100)
+    max_features: int = parameter(2048, "most SIFT keypoints of a frame, the largest kept", minimum=100)
     min_contrast: float = parameter(
         0.00667,
         "least contrast of a keypoint; smaller finds more on faint texture",
@@ -92,7 +92,10 @@ class PosesParams:
     min_points: int = parameter(500, "with fewer points, those that only two frames see are kept", minimum=0)
     least_points: int = parameter(50, "given cameras: least number of points to go on with", minimum=1)
     min_agreement: float = parameter(
-        0.5, "given cameras: least share of the matches that agree with them", minimum=0, maximum=1
+        0.5,
+        "least share of the matches of given cameras, or of loop closures, that agree with the poses",
+        minimum=0,
+        maximum=1,
     )
     max_flat_share: float = parameter(0.98, "largest share of pairs of frames without parallax", minimum=0, maximum=1)
     min_motion: float = parameter(

@@ -50,6 +50,8 @@ def run(
         params.softmax_hardness,
         distrust=params.distrust,
         discontinuity=params.depth_discontinuity,
+        facing=params.facing,
+        trust_blur=params.trust_blur,
         threads=job.threads,
     )
     trust = read_consistency(consistency) if params.weighting == "consistency" else None

@@ -128,13 +128,14 @@ def _estimate(
     if store.ordered and len(mapped.model.cam_from_world) < count:
         job.progress.note("some frames have no pose: matching over gaps")
         wider = sorted(set(sequential_pairs(count, params.gap_overlap)) - set(pairs))
-        verified = verified | _verify(store, features, wider, lens, params, job)
-        mapped = _map_again(store, features, mapped, verified, lens, params, job)
+        bridges = _verify(store, features, wider, lens, params, job)
+        mapped = _extend(store, features, mapped, verified, bridges, lens, params, job)
+        verified = verified | bridges
     closures = {}
     if store.ordered and params.closures:
         closures = _find_closures(store, features, mapped, params, job)
         if closures:
-            mapped = _map_again(store, features, mapped, verified | closures, lens, params, job)
+            mapped = _extend(store, features, mapped, verified, closures, lens, params, job)
     poses = mapped.model.cam_from_world
     job.progress.note(f"{len(poses)} of {count} frames posed, in parts of {', '.join(map(str, mapped.parts))}")
     points = _good_points(mapped.model.points, poses, params)
@@ -186,21 +187,42 @@ def _find_closures(
     return closures
 
 
-def _map_again(
+def _extend(
     store: FrameStore,
     features: Sequence[Features],
     first: Mapped,
     verified: Mapping[tuple[int, int], Verified],
+    added: Mapping[tuple[int, int], Verified],
     lens: Lens | None,
     params: PosesParams,
     job: Job,
 ) -> Mapped:
-    again = _map(store, features, verified, lens, params, job)
+    everything = {**verified, **added}
+    extended = _map(store, features, everything, lens, params, job, start=first)
+    if extended is not None and not _follows(features, added, extended, params):
+        job.progress.note("the path has drifted too far to be closed by adjustment: mapping again with all pairs")
+        extended = _map(store, features, everything, lens, params, job)
     tolerance = np.radians(params.closure_rotation)
-    if again is None or not stays_on_path(first.model.cam_from_world, again.model.cam_from_world, tolerance):
+    if extended is None or not stays_on_path(first.model.cam_from_world, extended.model.cam_from_world, tolerance):
         job.progress.note("with more pairs of frames the path bends: the first path is kept")
         return first
-    return again
+    return extended
+
+
+def _follows(
+    features: Sequence[Features], added: Mapping[tuple[int, int], Verified], mapped: Mapped, params: PosesParams
+) -> bool:
+    poses = mapped.model.cam_from_world
+    posed = {pair: found.matches for pair, found in added.items() if pair[0] in poses and pair[1] in poses}
+    agreeing = agreeing_matches(
+        [frame.pixels for frame in features],
+        posed,
+        dict.fromkeys(poses, mapped.lens),
+        poses,
+        max_error=params.max_match_error,
+        min_matches=1,
+    )
+    return sum(map(len, agreeing.values())) >= params.min_agreement * sum(map(len, posed.values()))
 
 
 def _verify(
@@ -226,6 +248,7 @@ def _map(
     lens: Lens | None,
     params: PosesParams,
     job: Job,
+    start: Mapped | None = None,
 ) -> Mapped | None:
     return map_frames(
         features,
@@ -237,6 +260,7 @@ def _map(
         min_inliers=params.second_try_inliers,
         min_inlier_share=params.second_try_share,
         seed=job.seed,
+        start=start,
     )
 
 

@@ -35,7 +35,7 @@ def make_gnome(spacing: float = 0.0024, seed: int = 7) -> Solid:
         Seed of its textures.
     """
     coat = Material(knitted((0.03, 0.10, 0.30), (0.55, 0.55, 0.42), 0.0032, seed))
-    hat = Material(plain((0.55, 0.025, 0.03), 0.04, 0.03, seed + 1), 0.25, 60, 0.03)
+    hat = Material(speckled((0.60, 0.03, 0.035), (0.38, 0.015, 0.02), 0.0022, 0.4, seed + 1), 0.15, 25)
     skin = Material(plain((0.70, 0.38, 0.27), 0.08, 0.012, seed + 2), 0.05, 20)
     beard = Material(streaked((0.80, 0.77, 0.70), (0.34, 0.31, 0.27), 0.0016, 0.014, seed + 3))
     wool = Material(speckled((0.78, 0.75, 0.68), (0.45, 0.41, 0.35), 0.002, 0.35, seed + 4))
