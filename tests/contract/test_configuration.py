@@ -107,3 +107,27 @@ def test_absent_file_is_named_with_its_key(defaults, tmp_path, monkeypatch):
     config = {**defaults, "sequences": {"mug": {"source": str(tmp_path), "truth": {"mesh": "mug.ply"}}}}
     with pytest.raises(UserError, match=r"sequences\.mug\.truth\.mesh: expected a file or folder, found no mug\.ply"):
         list_sequences(config, ROOT)
+
+
+MISFITS = {
+    "empty list": ("edges", {"scales": []}, "edges.scales: expected at least 1 values, got 0"),
+    "coupling": ("depth", {"coupling_decay": 0.1, "iterations": 10}, "coupling_decay \\* iterations below 1"),
+    "even median": ("depth", {"median_size": 4}, "depth.median_size: expected one of 1, 3, 5, got 4"),
+    "reaches": ("fuse_scene", {"region_least_reach": 2.0}, "fuse_scene: expected region_least_reach <= region_reach"),
+    "least angle": ("keyframes", {"min_angle": 13}, "keyframes: expected min_angle <= max_angle <= widest_angle"),
+    "widest angle": ("keyframes", {"widest_angle": 11}, "keyframes: expected min_angle <= max_angle <= widest_angle"),
+    "neighbours": ("keyframes", {"neighbours": 3}, "keyframes: expected min_neighbours <= neighbours, got 4 and 3"),
+    "depth range": ("keyframes", {"near_factor": 1.2}, "keyframes: expected near_factor < far_factor"),
+    "short clip distance": ("fuse_object", {"clip_distance": 1.5}, "fuse_object.clip_distance: expected at least 2"),
+}
+
+
+@pytest.mark.parametrize("case", MISFITS)
+def test_values_that_do_not_fit_each_other_are_refused_when_read(defaults, case):
+    stage, values, sentence = MISFITS[case]
+    with pytest.raises(UserError, match=sentence):
+        check_configuration(merged(defaults, {stage: values}), configuration_schema())
+
+
+def test_lists_that_are_empty_by_default_may_be_empty(defaults):
+    check_configuration(merged(defaults, {"evaluate": {"cylinder_sequences": []}}), configuration_schema())

@@ -1,5 +1,6 @@
 """Oracle, exact and property: ZNCC against loops, and the cost volume on a plane of known depth."""
 
+import cv2
 import numpy as np
 import scenes
 
@@ -7,6 +8,8 @@ from threedfs.depth.candidates import space_candidates
 from threedfs.depth.cost_volume import compute_cost_volume, plane_homography
 from threedfs.depth.zncc import MISSING, accumulate_cost, describe_patches, prepare_grey
 from threedfs.geometry.projection import backproject, project
+from threedfs.geometry.rigid import make_transform
+from threedfs.types import View
 
 
 def zncc_cost(reference, warped, radius, floor=0.0):
@@ -51,9 +54,9 @@ def test_gain_and_offset_do_not_change_the_cost():
 
 def test_a_variance_floor_keeps_noise_from_matching():
     """Two equal patches of noise far below the floor cost nearly 0.5, the cost of no correlation."""
-    noise = random_pair(2)[0] * np.float32(0.001)
+    noise = random_pair(2)[0] * np.float32(0.01)
     assert zncc_cost(noise, noise, 1, floor=0.0)[5, 5] < 0.01
-    assert zncc_cost(noise, noise, 1, floor=4.0)[5, 5] > 0.49
+    assert zncc_cost(noise, noise, 1, floor=100.0)[5, 5] > 0.49
 
 
 def test_missing_pixels_are_charged():
@@ -100,3 +103,45 @@ def test_invalid_pixels_are_missing():
     valid[0] = False
     grey = prepare_grey(np.full((4, 5, 3), 200, np.uint8), valid)
     assert np.all(grey[0] == MISSING) and np.all(grey[1:] == 72)
+
+
+def test_the_cost_stays_within_its_range_on_saturated_patches():
+    """Without a floor, single-precision rounding must not pass for a correlation beyond 1."""
+    rng = np.random.default_rng(4)
+    reference, warped = (np.float32(127) - (rng.random((30, 30)) > 0.9).astype(np.float32) for _ in range(2))
+    cost = zncc_cost(reference, warped, 1, floor=0.0)
+    assert cost.min() >= 0 and cost.max() <= 1
+
+
+def test_a_sample_that_barely_leaves_the_image_is_missing():
+    """An image shifted by 0.02 px against itself: the last columns have no partner, the others match."""
+    reference = random_pair(5)[0]
+    shifted = cv2.warpPerspective(
+        reference,
+        np.array([[1, 0, 0.02], [0, 1, 0], [0, 0, 1.0]]),
+        reference.shape[::-1],
+        flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
+        borderMode=cv2.BORDER_CONSTANT,
+        borderValue=float(MISSING),
+    )
+    cost = zncc_cost(reference, shifted, 1)
+    assert np.all(cost[1:-1, -2] == 0.5)
+    assert cost[1:-1, 1:-2].max() < 0.01
+
+
+def test_a_plane_behind_the_neighbour_is_missing():
+    """The neighbour stands beyond the nearest plane: whatever is mirrored there must not match."""
+    reference = scenes.views()[0]
+    ahead = View("ahead", scenes.CAMERA, make_transform(np.eye(3), [0, 0, -0.8]))
+    image = scenes.grey_images()["0"]
+    cost = compute_cost_volume(
+        reference,
+        image,
+        [ahead],
+        lambda view: image,
+        np.array([0.5, 0.6, 0.7]),
+        patch_radius=1,
+        variance_floor=1.0,
+        missing_cost=0.5,
+    )
+    assert np.all(cost == 0.5)

@@ -8,7 +8,7 @@ import trimesh
 from threedfs.errors import UserError
 from threedfs.evaluate.depth_error import DepthPairs, measure_depth, pair_depths, pool_pairs
 from threedfs.evaluate.rendering import MeshRenderer, filmed_pixels, image_points, sample_nearest
-from threedfs.frames.distortion import distort
+from threedfs.geometry.distortion import distort
 from threedfs.io.truth import find_depth_images, read_depth_image
 from threedfs.types import Camera, Mesh
 

@@ -10,7 +10,7 @@ from PIL import Image
 
 from threedfs.errors import UserError
 from threedfs.frames.calibrate import calibrate, find_board
-from threedfs.frames.distortion import distort, undistort
+from threedfs.geometry.distortion import distort, undistort
 from threedfs.io.calibration import Calibration, read_calibration, write_calibration
 from threedfs.params.calibrate import CalibrateParams
 from threedfs.stages import calibrate as stage

@@ -1,13 +1,12 @@
-"""Oracle, property, exact: undistorted images, their valid pixels, and masks back in the source."""
+"""Oracle, property, exact: undistorted images and their valid pixels."""
 
 import cv2
 import numpy as np
 import pytest
-from skimage.draw import polygon2mask
 
 from threedfs.errors import UserError
-from threedfs.frames.distortion import distort, undistort
-from threedfs.frames.undistort import assign_cameras, undistort_image, valid_pixels, warp_to_source
+from threedfs.frames.undistort import assign_cameras, undistort_image, valid_pixels
+from threedfs.geometry.distortion import distort, undistort
 from threedfs.geometry.projection import pixel_grid
 from threedfs.types import Camera
 
@@ -68,51 +67,6 @@ def test_without_distortion_the_image_is_the_same():
     raw = np.random.default_rng(0).integers(0, 255, (120, 160, 3), dtype=np.uint8)
     np.testing.assert_array_equal(undistort_image(raw, CAMERA, (0.0, 0.0)), raw)
     assert valid_pixels(CAMERA, (0.0, 0.0)).all()
-
-
-def disc(camera, centre, radius):
-    u, v = pixel_grid(camera)
-    return (u - centre[0]) ** 2 + (v - centre[1]) ** 2 < radius**2
-
-
-@pytest.mark.parametrize("lens", [(0.0, 0.0), *LENSES])
-def test_a_mask_goes_to_the_source_and_comes_back(lens):
-    mask = disc(CAMERA, (70, 60), 35)
-    source = warp_to_source(mask, CAMERA, lens, (360, 480))
-    working = cv2.resize(source.astype(np.float32), (160, 120), interpolation=cv2.INTER_AREA)
-    back = undistort_image(np.repeat(working[..., None], 3, axis=-1), CAMERA, lens)[..., 0] > 0.5
-    # The outline may move by a fraction of a pixel: 220 pixels of it, of 3,850.
-    assert np.mean(back != mask) * mask.size < 30
-    assert np.count_nonzero(source) / 9 == pytest.approx(np.count_nonzero(mask), rel=0.25)
-
-
-@pytest.mark.parametrize("lens", LENSES)
-def test_the_source_mask_lies_where_the_lens_images_it(lens):
-    mask = disc(CAMERA, (110, 40), 20)
-    source = warp_to_source(mask, CAMERA, lens, (240, 320))
-    angle = np.linspace(0, 2 * np.pi, 1000)
-    edge = np.stack([110 + 20 * np.cos(angle), 40 + 20 * np.sin(angle)], axis=-1)
-    focal, centre = np.array([CAMERA.fx, CAMERA.fy]), np.array([CAMERA.cx, CAMERA.cy])
-    imaged = distort((edge - centre) / focal, lens) * focal + centre
-    outline = (imaged + 0.5) * 2 - 0.5
-    expected = polygon2mask((240, 320), outline[:, ::-1])
-    # The working mask is a stair-stepped disc: its own pixels decide the outline, half a working pixel either way.
-    overlap = np.count_nonzero(source & expected) / np.count_nonzero(source | expected)
-    assert overlap > 0.96
-    # Averaged over the outline nothing of that is left: a wrong pixel convention would shift the mask by 0.5.
-    shift = np.mean(np.argwhere(source), axis=0) - np.mean(np.argwhere(expected), axis=0)
-    assert np.abs(shift).max() < 0.1
-
-
-def test_a_full_mask_fills_the_source_without_distortion():
-    assert warp_to_source(np.ones((120, 160), bool), CAMERA, (0.0, 0.0), (300, 400)).all()
-
-
-def test_what_the_working_frame_does_not_show_is_not_masked():
-    # Barrel: the corners of the source lie outside the undistorted frame.
-    lens = (-0.3, 0.0)
-    source = warp_to_source(np.ones((120, 160), bool), CAMERA, lens, (120, 160))
-    assert source[57, 82] and not source[0, 0] and not source[-1, -1]
 
 
 def test_frames_without_pose_take_the_nearest_camera():

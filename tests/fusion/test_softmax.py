@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from threedfs.errors import UserError
+from threedfs.fusion.fuse import limit_clip_distance
 from threedfs.fusion.softmax import SoftMaximum, estimate_fusion_memory
 from threedfs.geometry.grid import cover_box, voxel_centres
 from threedfs.geometry.rigid import invert, look_at, make_transform
@@ -12,8 +13,8 @@ from threedfs.types import Camera, View, VoxelGrid
 FACING = View("a", Camera(81, 81, 100.0, 100.0, 40.0, 40.0), np.eye(4))
 
 
-def fuse(grid, votes, *, clip=0.1, hardness=10.0, threads=1, distrust=4.0):
-    fused = SoftMaximum(grid, clip, hardness, distrust=distrust, discontinuity=0.02, threads=threads)
+def fuse(grid, votes, *, clip=0.1, hardness=10.0, distrust=4.0, **settings):
+    fused = SoftMaximum(grid, clip, hardness, distrust=distrust, discontinuity=0.02, **settings)
     for vote in votes:
         fused.add(*vote)
     return fused.result()
@@ -169,3 +170,22 @@ def test_view_looking_away_sees_nothing():
     away = View("b", FACING.camera, look_at(np.array([0, 0, -2.0]), np.array([0, 0, -5.0]), np.array([0.0, 1, 0])))
     _, seen = fuse(VoxelGrid(np.zeros(3), 0.1, (3, 3, 3)), [(away, np.full((81, 81), 9.0))])
     assert not seen.any()
+
+
+def test_without_confidence_every_vote_counts_the_same(table):
+    """Exact: plain votes are the paper's, whatever is set for those weighed by confidence."""
+    grid = cover_box(np.array([-0.4, -0.4, -0.1]), np.array([0.4, 0.4, 0.6]), 30)
+    votes = [(view, table.depth(view)) for view in table.views[:4]]
+    sure = [(*vote, np.ones(vote[1].shape)) for vote in votes]
+    plain = fuse(grid, votes)[0]
+    assert fuse(grid, votes, facing=1.0, trust_blur=4.0)[0].tobytes() == plain.tobytes()
+    assert fuse(grid, sure)[0].tobytes() == plain.tobytes()
+    assert not np.array_equal(fuse(grid, sure, facing=1.0, trust_blur=4.0)[0], plain)
+
+
+@pytest.mark.parametrize(
+    ("share", "thickness", "expected"), [(0.25, 2.0, 0.5), (0.25, 100.0, 1.0), (0.25, 0.1, 0.2), (0.0, 0.1, 1.0)]
+)
+def test_clip_distance_keeps_to_its_limits(share, thickness, expected):
+    """Exact: 10 voxels of 0.1, a share of the thickness, two voxels; with share 0 the paper's constant."""
+    assert limit_clip_distance(10.0, thickness, share, 0.1) == pytest.approx(expected)

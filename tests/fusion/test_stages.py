@@ -176,3 +176,17 @@ def test_object_without_points_is_told(table, tmp_path):
     lay_out(tmp_path, table)
     with pytest.raises(UserError, match="No object was found above the support plane"):
         run_all(tmp_path, point_deviation=0.001)
+
+
+def test_keyframe_without_a_depth_map_is_told(table, tmp_path):
+    """Rejection: the first keyframe's depth map is missing."""
+    lay_out(tmp_path, table)
+    depth = sorted((tmp_path / "depth").iterdir())[1:]
+    with pytest.raises(UserError, match=f"found none for {table.views[0].name}; run again, rule depth"):
+        consistency.run(
+            keyframes=tmp_path / "keyframes.json",
+            depth=depth,
+            consistency=tmp_path / "consistency.zarr.zip",
+            params=ConsistencyParams(),
+            job=Job(Progress("test"), HEADER),
+        )

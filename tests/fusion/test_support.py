@@ -10,11 +10,13 @@ from threedfs.fusion.support import SupportRule, find_support, settle_support
 from threedfs.fusion.surface import zero_crossings
 from threedfs.geometry.grid import cover_box, voxel_centres
 from threedfs.geometry.plane import fit_plane
-from threedfs.geometry.rigid import make_transform
-from threedfs.types import View
+from threedfs.geometry.rigid import look_at, make_transform
+from threedfs.types import Camera, View
 
 RULE = SupportRule(tolerance=0.015, doublings=3, reach=0.5, max_tilt=75.0, min_share=0.3, candidates=2000)
 UP = np.array([0.0, 0, 1])
+SIGNS = [(1, 1), (1, -1), (-1, 1), (-1, -1)]
+CAMERA = Camera(160, 120, 150.0, 150.0, 79.5, 59.5)
 
 
 def patch(rng, count, corner, across, down, normal, noise):
@@ -200,3 +202,20 @@ def test_region_rejects(points, sentence):
     """Rejection."""
     with pytest.raises(UserError, match=sentence):
         scene_region(points, 2.0, np.zeros(3), 0.5, 1.0)
+
+
+@pytest.mark.parametrize("height", [0.9, 3.0, 12.0, 400.0])
+def test_up_is_found_on_steep_paths(height):
+    """Property: an orbit however steep, down to one straight above in which no axis has a common part."""
+    angles = 2 * np.pi * np.arange(12) / 12
+    centres = np.stack([1.2 * np.cos(angles), 1.2 * np.sin(angles), np.full(12, height)], axis=1)
+    views = [View("", CAMERA, look_at(centre, np.array([0, 0, 0.2]), UP)) for centre in centres]
+    assert find_up(views, np.array([0, 0, 0.2])) @ UP > 0.99
+
+
+def test_views_from_all_around_do_not_tell_up():
+    """Rejection: opposite cameras, each once upright and once upside down: nothing has a common part."""
+    poses = [(side * np.eye(3)[axis], turn * np.eye(3)[axis - 1]) for axis in range(3) for side, turn in SIGNS]
+    views = [View("", CAMERA, look_at(centre, np.zeros(3), up)) for centre, up in poses]
+    with pytest.raises(UserError, match="do not tell which way is up"):
+        find_up(views, np.zeros(3))

@@ -9,7 +9,7 @@ import trimesh
 
 from threedfs.errors import UserError
 from threedfs.io.images import read_image, read_mask, write_mask, write_png
-from threedfs.io.meshes import read_mesh, write_mesh, write_point_cloud
+from threedfs.io.meshes import read_mesh, write_mesh
 from threedfs.io.metrics import read_metrics, write_metrics
 from threedfs.types import Mesh
 
@@ -63,14 +63,6 @@ def test_same_mesh_has_the_same_bytes(tetrahedron, tmp_path):
     for name in "ab":
         write_mesh(tmp_path / f"{name}.ply", tetrahedron)
     assert (tmp_path / "a.ply").read_bytes() == (tmp_path / "b.ply").read_bytes()
-
-
-def test_points_keep_place_and_colour(tmp_path):
-    xyz, rgb = np.array([[0.5, 1, 2], [3, 4, 5]]), np.array([[255, 0, 7], [1, 2, 3]], np.uint8)
-    write_point_cloud(tmp_path / "a.ply", xyz, rgb)
-    found = trimesh.load(tmp_path / "a.ply")
-    assert np.allclose(found.vertices, xyz)
-    assert (np.asarray(found.colors)[:, :3] == rgb).all()
 
 
 def test_metrics_come_back(figures, tmp_path):

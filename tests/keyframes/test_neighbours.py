@@ -89,3 +89,11 @@ def test_a_distant_background_does_not_hide_the_baseline(make_ring):
     _, near_only = measure_pairs(ring.visibility, 0)
     # The background weighs 600 / 100^2 against 200 / 1^2 of the near points: the median moves by one point at most.
     np.testing.assert_allclose(angle, near_only, rtol=0.01, atol=1e-5)
+
+
+def test_a_turning_camera_has_no_neighbours(make_ring):
+    """Property: centres that differ by rounding only are one place, whatever the arc cosine of nearly 1 says."""
+    ring = make_ring(count=6, turns=0)
+    centres = ring.visibility.centres + 1e-7 * np.random.default_rng(0).normal(size=(6, 3))
+    visibility = Visibility(centres, ring.visibility.xyz, ring.visibility.depth, ring.visibility.seen)
+    assert len(choose_neighbours(visibility, 0, RULE)) == 0

@@ -52,3 +52,17 @@ def test_photo_clusters_do_not_depend_on_a_path(make_ring):
         assert min(score[centre, members].max() for centre in members) <= 1
     # Sectors reach 15.5 degrees to either side of a centre at most, and centres are over 15.5 degrees apart.
     assert 360 / 31 <= sector.max() + 1 <= 360 / 15.5
+
+
+def test_photos_without_points_end_the_clustering(make_ring):
+    """Exact: two photos that see no point add most, are taken once each, and nothing is added after them."""
+    ring = make_ring(count=12)
+    depth, seen = ring.visibility.depth.copy(), ring.visibility.seen.copy()
+    depth[[3, 7]], seen[[3, 7]] = np.nan, False
+    visibility = type(ring.visibility)(ring.visibility.centres, ring.visibility.xyz, depth, seen)
+    score = score_frames(visibility, 16.0, 9.0)
+    np.testing.assert_array_equal(np.diag(score), 0)
+    # 30 degrees apart, each is a sector of its own.
+    np.testing.assert_array_equal(np.bincount(cluster_photos(score, 1.0)), 12 * [1])
+    # A diagonal that is not zero must not keep it going either.
+    assert cluster_photos(score + 9 * np.eye(12), 1.0).max() <= 11

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from threedfs.errors import UserError
+from threedfs.geometry.rigid import look_at
 from threedfs.geometry.similarity import Similarity
 from threedfs.io.frames import Frame, write_frames
 from threedfs.io.images import write_mask
@@ -20,19 +23,21 @@ from threedfs.stages import keyframes as stage
 
 @pytest.fixture
 def run_stage(make_ring, tmp_path):
-    """Write the inputs of a ring of 72 frames and run the stage on them."""
+    """Write the inputs of a ring of 72 frames and run the stage on them; `moved` gives some another pose."""
     ring = make_ring(count=72)
     inputs = {
         name: tmp_path / file for name, file in (("poses", "p.json"), ("points", "p.zip"), ("undistorted", "f.zip"))
     }
     blank = np.zeros((120, 160, 3), np.uint8)
-    frames = (Frame(view.name, int(view.name), 0.0, 1.0, blank) for view in ring.views)
-    write_frames(inputs["undistorted"], frames, {}, ordered=True, source_shape=(120, 160))
+    frames = [Frame(view.name, int(view.name), 0.0, 1.0, blank) for view in ring.views]
     write_points(inputs["points"], ring.points, {})
     same = Similarity(1.0, np.eye(3), np.zeros(3))
-    write_poses(inputs["poses"], Poses(ring.views, (), (0.0, 0.0), same), {})
 
-    def run(masks=None, name="out.json", **changes):
+    def run(masks=None, name="out.json", ordered=True, moved=None, **changes):
+        poses = {i: view.cam_from_world for i, view in enumerate(ring.views)} | (moved or {})
+        views = tuple(replace(view, cam_from_world=poses[i]) for i, view in enumerate(ring.views))
+        write_frames(inputs["undistorted"], frames, {}, ordered=ordered, source_shape=(120, 160))
+        write_poses(inputs["poses"], Poses(views, (), (0.0, 0.0), same), {})
         job = Job(Progress("keyframes"), header={"made_by": "a test"})
         out = tmp_path / name
         stage.run(**inputs, masks=masks, keyframes=out, params=KeyframesParams(**changes), job=job)
@@ -69,4 +74,41 @@ def test_masks_of_no_frame_are_refused(run_stage, tmp_path):
     """Rejection: masks whose names fit no frame."""
     write_mask(tmp_path / "masks" / "cover.png", np.zeros((4, 4), bool))
     with pytest.raises(UserError, match="expected masks named after frames"):
+        run_stage(masks=tmp_path / "masks")
+
+
+AWAY = look_at(np.array([1.0, -0.4, 0.0]), np.array([5.0, -0.4, 0.0]), np.array([0, -1.0, 0]))
+"""A pose from which no point is in view."""
+
+
+@pytest.mark.parametrize("ordered", [True, False])
+def test_frames_that_see_no_points_are_left_out_with_a_note(run_stage, capsys, ordered):
+    """Property: a video, or photos, go on without them."""
+    entries = read_keyframes(run_stage(ordered=ordered, moved={5: AWAY, 40: AWAY}, max_keyframes=18))
+    assert len(entries) >= 12 and not {"000050", "000400"} & set(entries)
+    assert "too few sparse points in view: 000050, 000400" in capsys.readouterr().err
+
+
+def test_an_annotated_frame_that_sees_no_points_is_refused(run_stage, tmp_path):
+    """Rejection: it must be a keyframe and cannot."""
+    write_mask(tmp_path / "masks" / "50.png", np.zeros((4, 4), bool))
+    with pytest.raises(UserError, match="keyframe 000050: expected at least 10 sparse points in view, got 0"):
+        run_stage(masks=tmp_path / "masks", moved={5: AWAY})
+
+
+def test_a_camera_that_stands_still_is_refused(run_stage, make_ring):
+    """Rejection: no keyframe has a neighbour."""
+    still = make_ring(count=72).views[0].cam_from_world
+    with pytest.raises(UserError, match="No frame sees its points from another place"):
+        run_stage(moved=dict.fromkeys(range(72), still))
+
+
+def test_keyframes_without_neighbours_are_left_out_unless_annotated(run_stage, tmp_path, monkeypatch, capsys):
+    """Property: one keyframe without a neighbour costs that keyframe, or is refused by its name."""
+    found = stage.choose_neighbours
+    monkeypatch.setattr(stage, "choose_neighbours", lambda v, f, rule: [] if f == 3 else found(v, f, rule))
+    assert "000030" not in read_keyframes(run_stage(max_keyframes=72, new_keyframe_score=1e-6))
+    assert "no frame sees from another place: 000030" in capsys.readouterr().err
+    write_mask(tmp_path / "masks" / "30.png", np.zeros((4, 4), bool))
+    with pytest.raises(UserError, match="keyframe 000030: expected frames that see its points from another place"):
         run_stage(masks=tmp_path / "masks")

@@ -7,8 +7,8 @@ import pytest
 
 from threedfs.geometry.projection import backproject, project
 from threedfs.params.semidense import SemidenseParams
-from threedfs.semidense.gradient import image_gradient, to_grey
-from threedfs.semidense.observe import FOUND, NOT_SEARCHED, SearchRule, search_line
+from threedfs.semidense.gradient import find_textured, image_gradient, to_grey
+from threedfs.semidense.observe import FOUND, NOT_SEARCHED, TEMPLATE_MARGIN, SearchRule, search_line
 from threedfs.semidense.pair import relate
 
 PARAMS = SemidenseParams()
@@ -130,3 +130,22 @@ def test_the_end_of_the_segment_is_not_a_minimum(make_scene):
     inside = found[outcome == FOUND]
     # Two pixels of tolerance; one along the line is about 1 / 31 of inverse depth: focal length 200, baseline 0.157.
     assert len(inside) and inside.min() > low - 2 / 31 and inside.max() < high + 2 / 31
+
+
+def test_no_sample_reads_an_invalid_pixel(make_scene):
+    """Exact: what stands at invalid pixels of either image changes nothing, in any search, to the last bit."""
+    scene = make_scene(neighbour_focal=90.0)  # few pixels in the neighbour: templates reach farthest in the keyframe
+    valid = np.ones(scene.depth.shape, bool)
+    valid[:, 100:103] = False
+    valid[60:63] = False
+    results = []
+    for value in (0.0, 200.0):
+        grey, other = to_grey(scene.image), to_grey(scene.neighbours[0][1])
+        grey[~valid], other[~valid] = value, value
+        # The same pixels in both: of those searched, the gradient too keeps away from what is invalid.
+        searched = find_textured(np.where(valid, grey, 0), valid, 5.0, TEMPLATE_MARGIN)
+        pixels = np.argwhere(searched)[::7]
+        results.append([search(scene, u, v, grey=grey, other=other, other_valid=valid) for v, u in pixels])
+    first, second = (np.array(part) for part in results)
+    assert (first[:, 0] == FOUND).sum() > 20
+    np.testing.assert_array_equal(first, second)

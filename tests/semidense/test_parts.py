@@ -43,14 +43,14 @@ def test_grey_and_gradient_have_known_values():
 
 
 def test_textured_pixels_lie_at_gradients_inside_the_valid_image():
-    """Exact: a step of 100 levels marks its 4 columns, but not the 3 rows at the border nor near invalid pixels."""
+    """Exact: a step of 100 levels marks its 4 columns, but for 3 pixels along the border and invalid pixels."""
     grey = np.zeros((20, 30), np.float32)
     grey[:, 15:] = 100
     valid = np.ones((20, 30), bool)
     valid[:5] = False
     expected = np.zeros((20, 30), bool)
     expected[8:17, 13:17] = True
-    np.testing.assert_array_equal(find_textured(grey, valid, 5.0), expected)
+    np.testing.assert_array_equal(find_textured(grey, valid, 5.0, margin=3), expected)
 
 
 def test_agreeing_estimates_are_averaged_by_weight():

@@ -41,6 +41,7 @@ def toolbox(tmp_path: Path, monkeypatch) -> Path:
     (package / "topic.py").write_text(TOPIC)
     (package / "unrelated.py").write_text(UNRELATED)
     monkeypatch.syspath_prepend(str(tmp_path / "src"))
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kernels"))  # put back after `perform` has changed it
     yield package
     for name in [name for name in sys.modules if name.partition(".")[0] == "toolbox"]:
         del sys.modules[name]

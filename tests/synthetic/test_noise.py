@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from threedfs.synthetic.noise import fractal_noise, hash_cells
-from threedfs.synthetic.textures import plain, printed, speckled, streaked, tiled, wood, woven
+from threedfs.synthetic.textures import plain, printed, speckled, streaked, wood, woven
 
 POINTS = np.column_stack([np.random.default_rng(0).uniform(-3, 3, (20000, 2)), np.zeros(20000)])
 
@@ -58,7 +58,6 @@ def test_cells_have_their_own_uniform_numbers():
         streaked((0.8, 0.8, 0.7), (0.3, 0.3, 0.3), 0.002, 0.02),
         wood((0.4, 0.3, 0.1), (0.1, 0.06, 0.03), 0.1),
         woven((0.1, 0.2, 0.3), (0.6, 0.6, 0.5), 0.002),
-        tiled((0.7, 0.7, 0.7), (0.3, 0.3, 0.3), 0.1, 0.004),
         printed((0.8, 0.8, 0.7), (0.02, 0.02, 0.02), 0.006),
     ],
 )

@@ -6,11 +6,11 @@ from scipy.ndimage import binary_dilation, binary_erosion
 
 from threedfs.errors import UserError
 from threedfs.geometry.projection import project
+from threedfs.geometry.raycast import RayCaster
 from threedfs.geometry.rigid import make_transform
 from threedfs.synthetic.ball import CAMERA, CENTRE, GREY, RADIUS, ball_scene, view_from
 from threedfs.synthetic.film import expose
 from threedfs.synthetic.light import Light
-from threedfs.synthetic.raycast import RayCaster
 from threedfs.synthetic.render import Renderer, pixel_rays
 from threedfs.synthetic.shadow import CastLight
 from threedfs.synthetic.solid import Material

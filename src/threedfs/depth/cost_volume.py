@@ -62,7 +62,8 @@ def compute_cost_volume(
 
     Notes
     -----
-    Differs from the paper: variances have a floor, and a view that misses a pixel counts with a neutral error
+    Differs from the paper: patches are compared through the candidate's plane, not axis by axis around the
+    reprojected point; variances have a floor, and a view that misses a pixel counts with a neutral error
     instead of not at all, which would favour depths that few views see.
     """
     height, width = reference_grey.shape
@@ -73,14 +74,16 @@ def compute_cost_volume(
     for neighbour in track(neighbours):
         image = read_grey(neighbour)
         for index, depth in enumerate(candidates):
+            neighbour_from_reference = plane_homography(reference, neighbour, depth)
             warped = cv2.warpPerspective(
                 image,
-                plane_homography(reference, neighbour, depth),
+                neighbour_from_reference,
                 (width, height),
                 flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
                 borderMode=cv2.BORDER_CONSTANT,
                 borderValue=float(MISSING),
             )
+            warped[_behind(neighbour_from_reference, height, width)] = MISSING
             accumulate_cost(
                 warped,
                 grey,
@@ -94,3 +97,12 @@ def compute_cost_volume(
             )
     cost /= np.float32(len(neighbours))
     return cost
+
+
+def _behind(homography: np.ndarray, height: int, width: int) -> np.ndarray | slice:
+    """Return where the plane lies behind the neighbour, as an index; the third row of the map is its depth there."""
+    row, column, constant = homography[2, 1], homography[2, 0], homography[2, 2]
+    corners = [constant, constant + row * height, constant + column * width, constant + row * height + column * width]
+    if min(corners) > 0:
+        return np.s_[:0]
+    return column * np.arange(width) + row * np.arange(height)[:, None] + constant <= 0

@@ -16,6 +16,7 @@ from threedfs.depth.multigrid import (
     flat_offsets,
     padded_shape,
 )
+from threedfs.errors import UserError
 
 _PADDING_WEIGHT = 1e-4
 """Smoothness of the rows and columns that only fill the grid up: enough to be solvable, too little to pull."""
@@ -101,9 +102,19 @@ def solve_surface(
         Stop when the energy norm of the error, estimated through the preconditioner, is below this share of the
         energy norm of the right-hand side. A residual relative to the largest weight would mean nothing.
     max_steps : int
+
+    Raises
+    ------
+    UserError
+        If no pixel has a confident depth or a measurement: nothing says where the surface is.
     """
     confidence, measurement = problem.confidence[0].planes[0], problem.measurement[0].planes[0]
     diagonal = coupling_factor * confidence + measurement
+    if not diagonal.max() > 0:
+        raise UserError(
+            "depth: expected pixels with a photo-consistent or measured depth, found none; the image has no texture, "
+            "or no neighbour overlaps it."
+        )
     planes = problem.prior[0].planes
     height, width = problem.padded
     active = np.flatnonzero([plane.any() for plane in planes])

@@ -8,10 +8,11 @@ import cv2
 import numpy as np
 from numba import njit
 
-MISSING = np.float32(-1e6)
-"""Grey value of a pixel that no image shows; any patch that touches one has a sum far below every real patch."""
+MISSING = np.float32(-1e9)
+"""Grey value of a pixel that no image shows: so low that a patch which touches one, or a sample interpolated with
+the least share of one, has a sum far below every real patch."""
 
-_LEAST_VARIANCE = np.float32(1e-3)
+_LEAST_VARIANCE = np.float32(0.02)
 """Grey levels squared; under it a patch is flat, and rounding would decide its correlation."""
 
 
@@ -145,5 +146,6 @@ def accumulate_cost(
             variance = max(square * scale - average * average + floor, _LEAST_VARIANCE)
             covariance = product * scale - average * mean_row[u]
             correlation = covariance * spread_row[u] / np.sqrt(variance)
+            correlation = min(max(correlation, np.float32(-1)), np.float32(1))
             known = total > np.float32(-1e5)
             row[u] += half * (np.float32(1) - correlation) if known else missing_cost

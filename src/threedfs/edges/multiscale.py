@@ -20,7 +20,7 @@ def multiscale_gradient(
     At every scale the gradient is the largest singular value of the colour Jacobian. The mean is large only where all
     scales are: the coarse ones fade texture and noise, the fine ones keep the contour thin.
 
-    Differs from the paper: it uses the Structured Edge Detector (Section 3.2.2); this needs no training.
+    Differs from the paper: it uses the Structured Edge Detector (Section 3.2, item ii, Eq. 9); this needs no training.
 
     Parameters
     ----------

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from threedfs.frames.distortion import distort, undistort
+from threedfs.geometry.lens import Lens
 from threedfs.geometry.projection import pixel_grid
-from threedfs.synthetic.raycast import RayCaster
+from threedfs.geometry.raycast import RayCaster
 from threedfs.types import Camera, Mesh
 
 Distortion = tuple[float, float]
@@ -62,7 +62,7 @@ def image_points(camera: Camera, distortion: Distortion, pixels: np.ndarray | No
     """
     if pixels is None:
         pixels = np.stack(pixel_grid(camera), axis=-1)
-    return undistort(_normalise(camera, pixels), distortion)
+    return Lens(camera, *distortion).normalise(pixels)
 
 
 def filmed_pixels(camera: Camera, distortion: Distortion, source_shape: tuple[int, int]) -> np.ndarray:
@@ -81,8 +81,8 @@ def filmed_pixels(camera: Camera, distortion: Distortion, source_shape: tuple[in
         (u, v); NaN where the lens shows nothing. Two calibrations of a lens are compared at the same spot of the
         sensor by passing it on to `image_points` of the other one.
     """
-    raw = distort(_normalise(camera, np.stack(pixel_grid(camera), axis=-1)), distortion)
-    pixels = raw * (camera.fx, camera.fy) + (camera.cx, camera.cy)
+    ideal = Lens(camera).normalise(np.stack(pixel_grid(camera), axis=-1))
+    pixels = Lens(camera, *distortion).denormalise(ideal)
     return (pixels + 0.5) * (source_shape[1] / camera.width, source_shape[0] / camera.height) - 0.5
 
 
@@ -94,7 +94,3 @@ def sample_nearest(image: np.ndarray, pixels: np.ndarray, outside: float | bool)
     values = np.full(pixels.shape[:-1], outside, image.dtype)
     values[inside] = image[v[inside].astype(int), u[inside].astype(int)]
     return values
-
-
-def _normalise(camera: Camera, pixels: np.ndarray) -> np.ndarray:
-    return (pixels - (camera.cx, camera.cy)) / (camera.fx, camera.fy)

@@ -1,4 +1,4 @@
-"""Images without radial distortion, and masks back in the geometry of the source (Section 3.1)."""
+"""Images without radial distortion (Section 3.1)."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 
 from threedfs.errors import UserError
-from threedfs.frames.distortion import distort, undistort
+from threedfs.geometry.lens import Lens
 from threedfs.geometry.projection import pixel_grid
 from threedfs.types import Camera
 
@@ -59,7 +59,7 @@ def undistort_image(image: np.ndarray, camera: Camera, distortion: tuple[float, 
     camera : Camera
         Its camera, at that resolution.
     distortion : tuple of float
-        (k1, k2), see `threedfs.frames.distortion`.
+        (k1, k2), see `threedfs.geometry.distortion`.
 
     Returns
     -------
@@ -83,52 +83,9 @@ def valid_pixels(camera: Camera, distortion: tuple[float, float]) -> np.ndarray:
     return across & down
 
 
-def warp_to_source(
-    mask: np.ndarray, camera: Camera, distortion: tuple[float, float], source_shape: tuple[int, int]
-) -> np.ndarray:
-    """Bring a mask of an undistorted working frame to the frame as it was filmed.
-
-    Parameters
-    ----------
-    mask : (H, W) bool
-        In the geometry of `camera`.
-    source_shape : tuple of int
-        (Hs, Ws) of the source frames.
-
-    Returns
-    -------
-    (Hs, Ws) bool
-        True where the mask, interpolated linearly, is above a half; false where the undistorted frame does not reach.
-    """
-    columns, rows = _ideal_from_source(camera, tuple(distortion), tuple(source_shape))
-    inside = (np.abs(columns - (camera.width - 1) / 2) <= camera.width / 2) & (
-        np.abs(rows - (camera.height - 1) / 2) <= camera.height / 2
-    )
-    # The outer half of a border pixel has no neighbour to interpolate with: repeat the border there.
-    warped = cv2.remap(mask.astype(np.float32), columns, rows, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)
-    return (warped > 0.5) & inside
-
-
 @lru_cache(maxsize=2)
 def _raw_from_ideal(camera, distortion):
     """Return where each undistorted pixel lies in the raw frame: columns and rows (H, W) float32."""
-    return _to_pixels(camera, distort(_normalise(camera, *pixel_grid(camera)), distortion))
-
-
-@lru_cache(maxsize=2)
-def _ideal_from_source(camera, distortion, source_shape):
-    """Return where each source pixel lies in the undistorted frame: columns and rows (Hs, Ws) float32."""
-    v, u = np.mgrid[: source_shape[0], : source_shape[1]].astype(np.float64)
-    u = (u + 0.5) * (camera.width / source_shape[1]) - 0.5
-    v = (v + 0.5) * (camera.height / source_shape[0]) - 0.5
-    return _to_pixels(camera, undistort(_normalise(camera, u, v), distortion))
-
-
-def _normalise(camera, u, v):
-    return np.stack([(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy], axis=-1)
-
-
-def _to_pixels(camera, points):
-    columns = points[..., 0] * camera.fx + camera.cx
-    rows = points[..., 1] * camera.fy + camera.cy
-    return tuple(np.nan_to_num(axis, nan=_NOWHERE).astype(np.float32) for axis in (columns, rows))
+    ideal = Lens(camera).normalise(np.stack(pixel_grid(camera), axis=-1))
+    raw = Lens(camera, *distortion).denormalise(ideal)
+    return tuple(np.nan_to_num(raw[..., axis], nan=_NOWHERE).astype(np.float32) for axis in (0, 1))

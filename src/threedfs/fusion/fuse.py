@@ -39,16 +39,22 @@ def fuse_views(votes: Iterable[Vote], fused: SoftMaximum) -> tuple[np.ndarray, n
 
 
 def limit_clip_distance(clip_distance: float, thickness: float, share: float, spacing: float) -> float:
-    """Return the clip distance in scene units, at most `share` of the object's thickness and at least 2 voxels.
+    """Return the clip distance in scene units, at most `share` of the object's thickness but at least 2 voxels.
+
+    Differs from the paper: its clip distance is a constant (Eq. 14), with which the field of an object thinner than
+    twice that never reaches -1 inside; with `share` 0 it is the paper's.
 
     Parameters
     ----------
     clip_distance : float
-        In voxels.
+        In voxels, at least 2.
     thickness : float
         Of the object, scene units.
     share : float
+        0 for no limit.
     spacing : float
         Edge of a voxel, scene units.
     """
-    return float(np.clip(share * thickness, 2 * spacing, max(clip_distance, 2) * spacing))
+    if share == 0:
+        return clip_distance * spacing
+    return float(np.clip(share * thickness, 2 * spacing, clip_distance * spacing))

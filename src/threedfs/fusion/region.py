@@ -14,13 +14,15 @@ def scene_region(
 
     It reaches `deviations` standard deviations of the points to both sides of their median, axis by axis.
 
-    Differs from the paper: along each axis it reaches at least `least_reach` and at most `reach` from what the
-    cameras look at. Points far behind the object would make the region so wide that the object is a few voxels;
-    points mostly on the floor would make it so low that a tall object is cut off.
+    Differs from the paper: the points are the sparse ones, not LSD-SLAM's semi-dense cloud; along each axis it
+    reaches at least `least_reach` and at most `reach` from what the cameras look at. Points far behind the object
+    would make the region so wide that the object is a few voxels; points mostly on the floor would make it so low
+    that a tall object is cut off. `least_reach` 0 and a large `reach` give the paper's limits.
 
     Parameters
     ----------
     points : (N, 3) float64, world
+        The sparse points.
     deviations : float
     fixation : (3,) float64
     least_reach, reach : float

@@ -10,24 +10,32 @@ from numba import njit, prange
 from scipy.ndimage import gaussian_filter
 
 from threedfs.checks import check_shape
-from threedfs.fusion.view_sdf import invert_depth, sample_inverse_depth
+from threedfs.fusion.view_sdf import invert_depth, sample_inverse_depth, signed_distance
 from threedfs.geometry.projection import normals_from_depth, pixel_grid
 from threedfs.types import Camera, View, VoxelGrid
 
 UNSEEN = 1.0
 """Value of voxels that no view sees: not solid, and told from empty ones by `seen` being 0."""
 
-
 _FREE_RAMP = 3.0
-_NORMAL_SMOOTHING = 2.0  # standard deviation in pixels
+"""Clip distances, from the first in front of a view's surface, over which its vote for free space grows to full
+weight: near the surface, where the view may be wrong, it counts as much as the surface is trusted."""
+
+_NORMAL_SMOOTHING = 2.0
+"""Standard deviation, in pixels, of the smoothing of depth before normals are taken."""
 
 
 class SoftMaximum:
     """Fuses the signed distances of views into one field on a grid, holding one view at a time.
 
-    Differs from the paper: a vote of confidence c enters Eq. 15 as exp(h (S - distrust (1 - c))), so that a view
-    that others contradict loses against them instead of carving; with every c = 1, or without confidence, it
-    is the paper's.
+    Differs from the paper, where confidence is given: a vote of trust c enters Eq. 15 as
+    exp(h (S - distrust (1 - c))), so that a view that others contradict loses against them instead of carving. Trust
+    is the confidence times how squarely the view faces the surface (`facing`), smoothed (`trust_blur`); votes for
+    space that other views leave free are trusted fully from `_FREE_RAMP` clip distances on. Without confidence
+    every vote counts the same, as in the paper.
+
+    Differs from the paper always: the sums of Eq. 15 run over the views that see a voxel, not over all, since the
+    others have no S_i; and depth is not interpolated across its discontinuities (`sample_inverse_depth`).
 
     Parameters
     ----------
@@ -43,10 +51,10 @@ class SoftMaximum:
     facing : float
         Cosine between a surface's normal and the ray to it from which a vote is trusted fully; below it the trust
         falls in proportion. Depth is worst where a surface turns away: the contour of a curved surface is another
-        curve in each view. 0 for the paper.
+        curve in each view. 0 for always. Acts on views with confidence.
     trust_blur : float
         Standard deviation in pixels by which trust is smoothed: votes that change from pixel to pixel roughen
-        the surface. 0 for none.
+        the surface. 0 for none. Acts on views with confidence.
     threads : int
         Cores used; the result does not depend on it.
     """
@@ -89,7 +97,7 @@ class SoftMaximum:
         view : View
         depth : (H, W) float, NaN where missing
         confidence : (H, W) float in [0, 1], optional
-            Trust in each pixel; all 1 without one.
+            Trust in each pixel; without it every vote counts the same.
         free_depth : (H, W) float, optional
             Depth up to which no other view contradicts that the ray is free: votes for empty space well in
             front of the surface and of this depth count fully, whatever the confidence in the surface.
@@ -105,11 +113,7 @@ class SoftMaximum:
             if values is not None:
                 check_shape(values, shape, f"{name} of view {view.name}")
         hardness = self._settings[1]
-        trust = np.ones(shape) if confidence is None else confidence.astype(np.float64)
-        if self._facing > 0:
-            trust = trust * np.clip(facing_cosine(view.camera, depth) / self._facing, 0.0, 1.0)
-        if self._trust_blur > 0:
-            trust = gaussian_filter(trust, self._trust_blur)
+        trust = np.ones(shape) if confidence is None else self._rate(view.camera, depth, confidence)
         handicap = hardness * self._distrust * (1.0 - trust)
         free = np.zeros(shape, np.float32) if free_depth is None else free_depth.astype(np.float32)
         camera = view.camera
@@ -127,6 +131,13 @@ class SoftMaximum:
             free,
             *self._settings,
         )
+
+    def _rate(self, camera: Camera, depth: np.ndarray, confidence: np.ndarray) -> np.ndarray:
+        """Return the trust in each pixel, (H, W) float64 in [0, 1]."""
+        trust = confidence.astype(np.float64)
+        if self._facing > 0:
+            trust = trust * np.clip(facing_cosine(camera, depth) / self._facing, 0.0, 1.0)
+        return gaussian_filter(trust, self._trust_blur) if self._trust_blur > 0 else trust
 
     def result(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the fused field and what is known of each voxel.
@@ -205,7 +216,7 @@ def _add_view(
                 if math.isnan(inverse):
                     continue
                 ray_length = math.sqrt(((u - cx) / fx) ** 2 + ((v - cy) / fy) ** 2 + 1.0)
-                distance = (1.0 / inverse - voxel_depth) * ray_length / clip_distance
+                distance = signed_distance(1.0 / inverse, voxel_depth, ray_length, clip_distance)
                 row, column = int(v + 0.5), int(u + 0.5)
                 penalty = handicap[row, column]
                 if distance > 1.0 and voxel_depth <= free_depth[row, column]:

@@ -1,4 +1,4 @@
-"""The clipped signed distance of voxels from the depth surface of one view."""
+"""The signed distance of voxels from the depth surface of one view."""
 
 from __future__ import annotations
 
@@ -24,6 +24,8 @@ def sample_inverse_depth(inverse_depth, u, v, discontinuity):
     Bilinear where the four pixels around lie on one surface, that is, where they spread over at most
     `discontinuity` times the nearest one's value; the nearest pixel's value across a depth discontinuity,
     where a mean would be a surface that does not exist.
+
+    Differs from the paper: its depth surface is in one piece, which a large `discontinuity` gives.
     """
     rows, columns = inverse_depth.shape
     if not (u >= 0 and v >= 0 and u <= columns - 1 and v <= rows - 1):
@@ -42,12 +44,12 @@ def sample_inverse_depth(inverse_depth, u, v, discontinuity):
 
 
 @njit(cache=True)
-def clipped_distance(surface_depth, voxel_depth, ray_length, clip_distance):
-    """Return the signed distance of a voxel from the depth surface along the ray, clipped to [-1, 1] (3.3.1, Eq. 14).
+def signed_distance(surface_depth, voxel_depth, ray_length, clip_distance):
+    """Return the signed distance of a voxel from the depth surface along its ray, not yet clipped (3.3.1, Eq. 14).
 
+    In units of the clip distance; clipped to [-1, 1] it is the S_i of Eq. 14.
     The voxel and the point where its ray meets the surface differ by a multiple of that ray, so the norm of
     their difference is the difference in depth times the length of the ray at depth 1. The sign of that
     difference in depth is the sign of the result: positive in front of the surface.
     """
-    distance = (surface_depth - voxel_depth) * ray_length / clip_distance
-    return min(1.0, max(-1.0, distance))
+    return (surface_depth - voxel_depth) * ray_length / clip_distance

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from threedfs.geometry.distortion import distort, undistort
 from threedfs.types import Camera
 
 
@@ -18,7 +19,7 @@ class Lens:
     camera : Camera
         The pinhole camera of the undistorted image, integer pixel centres.
     k1, k2 : float
-        A point at normalised (x, y) is seen at (x, y) (1 + k1 r^2 + k2 r^4).
+        Radial distortion, see `threedfs.geometry.distortion`.
     """
 
     camera: Camera
@@ -40,17 +41,14 @@ class Lens:
         return replace(self, camera=resized)
 
     def normalise(self, pixels: np.ndarray) -> np.ndarray:
-        """Return the undistorted normalised coordinates (N, 2) of raw pixels (N, 2), by fixed-point iteration."""
+        """Return the undistorted normalised coordinates (..., 2) of raw pixels (..., 2); NaN where there are none."""
         camera = self.camera
-        seen = (pixels - (camera.cx, camera.cy)) / (camera.fx, camera.fy)
-        ideal = seen.copy()
-        for _ in range(30):  # each step contracts by about 3 |k1| r^2: float64 precision for any usable lens
-            radius2 = (ideal**2).sum(-1, keepdims=True)
-            ideal = seen / (1 + self.k1 * radius2 + self.k2 * radius2**2)
-        return ideal
+        return undistort((pixels - (camera.cx, camera.cy)) / (camera.fx, camera.fy), (self.k1, self.k2))
 
     def denormalise(self, ideal: np.ndarray) -> np.ndarray:
-        """Return the raw pixels (N, 2) at which undistorted normalised coordinates (N, 2) are seen."""
-        radius2 = (ideal**2).sum(-1, keepdims=True)
-        seen = ideal * (1 + self.k1 * radius2 + self.k2 * radius2**2)
-        return seen * (self.camera.fx, self.camera.fy) + (self.camera.cx, self.camera.cy)
+        """Return the raw pixels (..., 2) at which undistorted normalised coordinates (..., 2) are seen.
+
+        NaN where the lens does not show them.
+        """
+        camera = self.camera
+        return distort(ideal, (self.k1, self.k2)) * (camera.fx, camera.fy) + (camera.cx, camera.cy)

@@ -19,10 +19,7 @@ def read_image(path: Path) -> np.ndarray:
     UserError
         If the file is missing or cannot be decoded.
     """
-    image = cv2.imread(str(path), cv2.IMREAD_COLOR) if Path(path).is_file() else None
-    if image is None:
-        raise UserError(f"{path}: expected an image, found none that can be decoded; check the file.")
-    return np.ascontiguousarray(image[..., ::-1])
+    return np.ascontiguousarray(_decode(path, cv2.IMREAD_COLOR, "an image")[..., ::-1])
 
 
 def write_png(path: Path, image: np.ndarray) -> None:
@@ -44,12 +41,16 @@ def read_mask(path: Path) -> np.ndarray:
     UserError
         If the file is missing or cannot be decoded.
     """
-    mask = cv2.imread(str(path), cv2.IMREAD_GRAYSCALE) if Path(path).is_file() else None
-    if mask is None:
-        raise UserError(f"{path}: expected a mask image, found none that can be decoded; check the file.")
-    return mask > 127
+    return _decode(path, cv2.IMREAD_GRAYSCALE, "a mask image") > 127
 
 
 def write_mask(path: Path, mask: np.ndarray) -> None:
     """Write a mask (H, W) bool as PNG: 255 object, 0 background."""
     write_png(path, mask.astype(np.uint8) * 255)
+
+
+def _decode(path: Path, mode: int, what: str) -> np.ndarray:
+    image = cv2.imread(str(path), mode) if Path(path).is_file() else None
+    if image is None:
+        raise UserError(f"{path}: expected {what}, found none that can be decoded; check the file.")
+    return image

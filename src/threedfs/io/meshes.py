@@ -1,4 +1,4 @@
-"""Meshes and coloured points as binary PLY."""
+"""Meshes: written as binary PLY, read from any format."""
 
 from __future__ import annotations
 
@@ -35,10 +35,3 @@ def read_mesh(path: Path) -> Mesh:
         return Mesh(np.asarray(mesh.vertices, np.float64), np.asarray(mesh.faces, np.int64))
     except Exception as fault:
         raise UserError(f"{path}: expected a triangle mesh, got something that cannot be read ({fault}).") from fault
-
-
-def write_point_cloud(path: Path, xyz: np.ndarray, rgb: np.ndarray) -> None:
-    """Write points (N, 3) with colours (N, 3) uint8 as binary PLY."""
-    data = trimesh.PointCloud(xyz, np.column_stack([rgb, np.full(len(rgb), 255, np.uint8)])).export(file_type="ply")
-    with atomic(path) as temporary:
-        temporary.write_bytes(data)

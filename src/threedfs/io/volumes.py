@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from threedfs.io.arrays import read_arrays, write_arrays, writing_arrays
+from threedfs.io.arrays import read_arrays, write_arrays
 from threedfs.io.documents import read_document, write_document
 from threedfs.io.schema import SILHOUETTES, SUPPORT, VOLUME
 from threedfs.types import Plane, VoxelGrid
@@ -93,11 +93,9 @@ def read_support(path: Path) -> Support:
 
 def write_silhouettes(path: Path, silhouettes: Mapping[str, np.ndarray], header: Mapping[str, Any]) -> None:
     """Write masks (H, W) bool by view name."""
-    with writing_arrays(path, SILHOUETTES, header) as writer:
-        for name, mask in silhouettes.items():
-            writer.put(name, mask, axes="row, column")
+    write_arrays(path, SILHOUETTES, silhouettes, header, {name: {"axes": "row, column"} for name in silhouettes})
 
 
 def read_silhouettes(path: Path) -> dict[str, np.ndarray]:
-    """Read masks (H, W) bool by view name."""
-    return read_arrays(path, SILHOUETTES)[0]
+    """Read masks (H, W) bool by view name, sorted by name."""
+    return dict(sorted(read_arrays(path, SILHOUETTES)[0].items()))

@@ -6,6 +6,9 @@ import numpy as np
 
 from threedfs.errors import UserError
 
+LEAST_POINTS = 10
+"""Sparse points in view below which nothing can be said of a keyframe's depth."""
+
 
 def expect_depth_range(depths: np.ndarray, near_factor: float, far_factor: float, what: str) -> tuple[float, float]:
     """Widen the range of the sparse depths in view, so that what no sparse point shows is inside too.
@@ -28,12 +31,12 @@ def expect_depth_range(depths: np.ndarray, near_factor: float, far_factor: float
     Raises
     ------
     UserError
-        If fewer than 10 points are in view.
+        If fewer than `LEAST_POINTS` points are in view.
     """
     depths = depths[np.isfinite(depths)]
-    if len(depths) < 10:
+    if len(depths) < LEAST_POINTS:
         raise UserError(
-            f"keyframe {what}: expected at least 10 sparse points in view, got {len(depths)}; "
+            f"keyframe {what}: expected at least {LEAST_POINTS} sparse points in view, got {len(depths)}; "
             "its camera looks past the scene or its pose is wrong, so remove the frame or check the given cameras."
         )
     low, high = np.percentile(depths, (1, 97))

@@ -8,6 +8,9 @@ import numpy as np
 
 from threedfs.keyframes.visibility import Visibility
 
+_LEAST_ANGLE = 0.01
+"""Degrees below which cameras stand at the same place: depth moves no pixel by more than a fraction."""
+
 
 @dataclass(frozen=True)
 class NeighbourRule:
@@ -55,18 +58,19 @@ def choose_neighbours(visibility: Visibility, keyframe: int, rule: NeighbourRule
     A frame is worth its overlap, less where its triangulation angle lies outside min_angle .. max_angle, and less
     the nearer it is to a neighbour already chosen; so they spread over both sides of a video's path, and over the
     sphere of a photo set. Frames beyond widest_angle, under min_overlap or under min_shared serve only to reach
-    min_count.
+    min_count. A frame from the same place is worth nothing.
 
     Returns
     -------
     (N,) int64
-        Frame numbers, best first.
+        Frame numbers, best first; none where no frame sees the keyframe's points from another place.
     """
     overlap, angle = measure_pairs(visibility, keyframe)
     angle = np.where(np.isfinite(angle), angle, 180.0)
     worth = (
         overlap * np.minimum(angle / rule.min_angle, 1) * np.minimum(rule.max_angle / np.maximum(angle, 1e-9), 1) ** 2
     )
+    worth[angle < _LEAST_ANGLE] = 0
     worth[keyframe] = 0
     shared = visibility.seen[:, visibility.seen[keyframe]].sum(axis=1)
     fit = (angle <= rule.widest_angle) & (overlap >= rule.min_overlap) & (shared >= rule.min_shared)

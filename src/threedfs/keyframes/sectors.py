@@ -27,7 +27,9 @@ def score_frames(visibility: Visibility, distance_weight: float, usage_weight: f
     mean_inverse_depth = np.where(visibility.seen, 1 / visibility.depth, 0).sum(axis=1) / count
     usage = seen @ visibility.in_view.T.astype(np.float64) / count[:, None]
     distance = np.linalg.norm(visibility.centres[:, None] - visibility.centres[None], axis=-1)
-    return distance_weight * (distance * mean_inverse_depth[:, None]) ** 2 + usage_weight * (1 - usage) ** 2
+    score = distance_weight * (distance * mean_inverse_depth[:, None]) ** 2 + usage_weight * (1 - usage) ** 2
+    np.fill_diagonal(score, 0)  # a frame without points uses none, but adds nothing to itself either
+    return score
 
 
 def split_sequence(score: np.ndarray, threshold: float) -> np.ndarray:
@@ -80,6 +82,7 @@ def cluster_photos(score: np.ndarray, threshold: float) -> np.ndarray:
     centres = [0]
     while True:
         added = score[centres].min(axis=0)
+        added[centres] = 0
         if added.max() <= threshold:
             return score[centres].argmin(axis=0)
         centres.append(int(added.argmax()))

@@ -49,7 +49,7 @@ def choose_component(
     A component (6-connected) scores by the number of voxels on it, or beside it, that hold points, falling off with
     its distance from the fixation point, and quartered for each face of the grid that it touches.
 
-    Differs from the paper: Secs. 3.4.1 and 3.5 take the largest one, which in a wide region is the space behind walls.
+    Differs from the paper: Secs. 3.4.2 and 3.5 take the largest one, which in a wide region is the space behind walls.
 
     Parameters
     ----------

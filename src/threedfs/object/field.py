@@ -45,9 +45,12 @@ def add_foot(voxels: np.ndarray, height: np.ndarray, grid: VoxelGrid, plane: Pla
 def mask_field(sdf: np.ndarray, owned: np.ndarray, height: np.ndarray, spacing: float) -> np.ndarray:
     """Return the field of the object alone, (nx, ny, nz) float32, negative inside it and nowhere else (Sec. 3.5).
 
-    Outside the object the field is set to 1 where it is negative; where it is positive it stays, so that the
-    zero level keeps its place between voxels (the paper sets all of it to 1, which moves the surface to the
-    voxel centres). The support plane cuts the object: below, the field is the distance to the plane in voxels.
+    Outside the object the field is set to 1 where it is negative. The support plane cuts the object: below, the field
+    is the distance to the plane in voxels.
+
+    Differs from the paper: outside the object the field stays where it is positive, so that the zero level keeps
+    its place between voxels; the paper sets all of it to 1, which moves the surface to the voxel centres. The
+    paper has no cut by the plane, its labels end there. The mesh smoothing of Section 3.5 is not applied here.
 
     Parameters
     ----------

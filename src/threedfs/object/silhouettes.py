@@ -7,8 +7,8 @@ import math
 import numpy as np
 from numba import njit
 
-from threedfs.frames.distortion import distort
 from threedfs.frames.scale import scale_camera
+from threedfs.geometry.lens import Lens
 from threedfs.geometry.projection import project
 from threedfs.geometry.rigid import apply
 from threedfs.types import Mesh, View
@@ -33,7 +33,7 @@ def draw_source_silhouette(
     view : View
         Of the undistorted working frame.
     distortion : tuple of float
-        (k1, k2), see `threedfs.frames.distortion`.
+        (k1, k2), see `threedfs.geometry.distortion`.
     source_shape : tuple of int
         (Hs, Ws) of the source frames.
 
@@ -44,8 +44,7 @@ def draw_source_silhouette(
     camera = scale_camera(view.camera, source_shape, f"silhouette of {view.name}")
     points = apply(view.cam_from_world, mesh.vertices)
     depth = np.where(points[:, 2:] > 0, points[:, 2:], np.nan)
-    imaged = distort(points[:, :2] / depth, distortion)
-    return rasterise(imaged * (camera.fx, camera.fy) + (camera.cx, camera.cy), mesh.faces, source_shape)
+    return rasterise(Lens(camera, *distortion).denormalise(points[:, :2] / depth), mesh.faces, source_shape)
 
 
 def rasterise(pixels: np.ndarray, faces: np.ndarray, shape: tuple[int, int]) -> np.ndarray:

@@ -11,7 +11,7 @@ from typing import Any
 import jsonschema
 
 from threedfs.errors import UserError
-from threedfs.params.schema import declared_stages, stage_schema
+from threedfs.params.schema import declared_stages, make_params, stage_schema
 
 METHODS = ("fused_sdf",)
 SEQUENCE_NAME = r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$"
@@ -54,17 +54,19 @@ def configuration_schema() -> dict[str, Any]:
 
 
 def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) -> None:
-    """Check a configuration against the schema.
+    """Check a configuration against the schema, and each stage's parameters against each other.
 
     Raises
     ------
     UserError
-        For the first fault, in the order of the keys.
+        For the first fault, in the order of the keys; values that do not fit each other come last.
     """
     faults = jsonschema.Draft202012Validator(schema).iter_errors(config)
     fault = min(faults, key=lambda fault: [str(part) for part in fault.absolute_path], default=None)
     if fault is not None:
         raise UserError(_explain(fault))
+    for stage, declared in declared_stages().items():
+        make_params(declared, config[stage])
 
 
 def list_sequences(config: Mapping[str, Any], home: Path) -> dict[str, dict[str, str | None]]:
@@ -142,6 +144,9 @@ def _explain(fault: jsonschema.ValidationError) -> str:
             return f"{where}: expected at least {limit}, got {value}."
         case "maximum":
             return f"{where}: expected at most {limit}, got {value}."
+        case "minItems" | "maxItems":
+            bound = "least" if fault.validator == "minItems" else "most"
+            return f"{where}: expected at {bound} {limit} values, got {len(value)}."
         case "exclusiveMinimum":
             return f"{where}: expected more than {limit}, got {value}."
         case "pattern":

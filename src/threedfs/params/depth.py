@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from threedfs.errors import UserError
 from threedfs.params.field import parameter
 
 
@@ -86,7 +87,7 @@ class DepthParams:
         2.6, "its factor from one iteration to the next", symbol="gamma", equation="Eq. 9", minimum=1
     )
     edge_falloff: float = parameter(
-        4.0, "how much an image edge weakens smoothing (paper: 5)", symbol="c_edge", equation="Eq. 9", minimum=0
+        1.0, "how much an image edge weakens smoothing (paper: 5)", symbol="c_edge", equation="Eq. 9", minimum=0
     )
     break_bending: float = parameter(
         0.003,
@@ -95,7 +96,7 @@ class DepthParams:
         minimum=0,
     )
     confidence_falloff: float = parameter(
-        10.0,
+        20.0,
         "how fast trust falls with the least photometric error (paper: 5)",
         symbol="c_conf",
         equation="Eq. 11",
@@ -116,4 +117,15 @@ class DepthParams:
         exclusive_minimum=0,
         maximum=1e-2,
     )
-    max_steps: int = parameter(100, "most steps of one linear solve", minimum=1)
+    max_steps: int = parameter(200, "most steps of one linear solve", minimum=1)
+
+    def __post_init__(self) -> None:
+        """Refuse values that do not fit each other."""
+        tightened = self.coupling_decay * self.iterations
+        if tightened >= 1:
+            raise UserError(
+                "configuration, depth: expected coupling_decay * iterations below 1, or coupling reaches zero, got "
+                f"{self.coupling_decay} * {self.iterations} = {tightened:.3g}."
+            )
+        if self.median_size % 2 == 0:
+            raise UserError(f"configuration, depth.median_size: expected one of 1, 3, 5, got {self.median_size}.")

@@ -14,7 +14,8 @@ class FuseObjectParams(FusionSettings):
 
     thickness_share: float = parameter(
         0.25,
-        "largest clip distance as a share of the object's thickness: the field of a thin object must reach -1 inside",
-        exclusive_minimum=0.0,
+        "largest clip distance as a share of the object's thickness: the field of a thin object must reach -1 inside; "
+        "0 for no limit (paper)",
+        minimum=0.0,
         maximum=1.0,
     )

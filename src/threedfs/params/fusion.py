@@ -20,7 +20,7 @@ class FusionSettings:
         unit="voxel",
         symbol="mu",
         equation="Eq. 14",
-        exclusive_minimum=0.0,
+        minimum=2.0,
     )
     softmax_hardness: float = parameter(
         4.0,
@@ -32,12 +32,13 @@ class FusionSettings:
     )
     weighting: str = parameter(
         "consistency",
-        "what a view's vote counts: the same everywhere, as in the paper, or by its agreement with other views",
+        "what a view's vote counts: the same everywhere, as in the paper (plain), or by its agreement with other views "
+        "and by how it faces the surface",
         choices=("plain", "consistency"),
     )
     distrust: float = parameter(
         4.0,
-        "handicap in the soft maximum of a vote that no other view agrees with; acts with weighting: consistency",
+        "handicap in the soft maximum of a vote that no other view agrees with; acts with consistency weighting",
         unit="clip distance",
         minimum=0.0,
         maximum=5.0,
@@ -49,13 +50,15 @@ class FusionSettings:
     )
     facing: float = parameter(
         1.0,
-        "cosine between normal and ray from which a view's vote is trusted fully, less below; 0 for always (paper)",
+        "cosine between normal and ray from which a view's vote is trusted fully, less below; 0 for always; acts with "
+        "consistency weighting",
         minimum=0.0,
         maximum=1.0,
     )
     trust_blur: float = parameter(
         4.0,
-        "standard deviation by which the trust in a view's pixels is smoothed; 0 for none (paper)",
+        "standard deviation by which the trust in a view's pixels is smoothed; 0 for none; acts with consistency "
+        "weighting",
         unit="px",
         minimum=0.0,
         maximum=50.0,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from threedfs.errors import UserError
 from threedfs.params.field import parameter
 
 
@@ -62,3 +63,21 @@ class KeyframesParams:
     far_factor: float = parameter(
         1.2, "far end of the depth range over the 97th percentile of the sparse depths", exclusive_minimum=0.0
     )
+
+    def __post_init__(self) -> None:
+        """Refuse values that do not fit each other."""
+        if not self.min_angle <= self.max_angle <= self.widest_angle:
+            raise UserError(
+                "configuration, keyframes: expected min_angle <= max_angle <= widest_angle, got "
+                f"{self.min_angle}, {self.max_angle} and {self.widest_angle}."
+            )
+        if self.min_neighbours > self.neighbours:
+            raise UserError(
+                "configuration, keyframes: expected min_neighbours <= neighbours, got "
+                f"{self.min_neighbours} and {self.neighbours}."
+            )
+        if self.near_factor >= self.far_factor:
+            raise UserError(
+                "configuration, keyframes: expected near_factor < far_factor, got "
+                f"{self.near_factor} and {self.far_factor}."
+            )

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from threedfs.params.component import ComponentSettings
 from threedfs.params.field import parameter
 
 
 @dataclass(frozen=True)
-class LocateParams:
+class LocateParams(ComponentSettings):
     """How the support plane and the object are found in the scene."""
 
     plane_tolerance: float = parameter(
@@ -41,15 +42,6 @@ class LocateParams:
         symbol="tau",
         equation="Sec. 3.4.1",
         minimum=0.0,
-    )
-    point_deviation: float = parameter(
-        0.05, "largest relative standard deviation of the semi-dense points that support a component", minimum=0.0
-    )
-    object_reach: float = parameter(
-        0.2,
-        "standard deviation of a component's worth over its distance from what the cameras look at",
-        unit="viewing distance",
-        exclusive_minimum=0.0,
     )
     bridge: int = parameter(
         1, "pieces up to twice so far apart count as one object when its box is drawn", unit="voxel", minimum=0

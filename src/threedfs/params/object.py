@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from threedfs.params.component import ComponentSettings
 from threedfs.params.field import parameter
 
 
 @dataclass(frozen=True)
-class ObjectParams:
+class ObjectParams(ComponentSettings):
     """How the object is told from the rest of its grid."""
 
     clearance: float = parameter(
@@ -16,7 +17,7 @@ class ObjectParams:
         "least height above the plane from which voxels may belong to the object",
         unit="voxel",
         symbol="tau",
-        equation="Sec. 3.4.1",
+        equation="Sec. 3.4.2",
         minimum=0.0,
     )
     noise_clearance: float = parameter(
@@ -24,13 +25,4 @@ class ObjectParams:
         "least height likewise, for surfaces rougher than a voxel",
         unit="standard deviation of the support from its plane",
         minimum=0.0,
-    )
-    point_deviation: float = parameter(
-        0.05, "largest relative standard deviation of the semi-dense points that support a component", minimum=0.0
-    )
-    object_reach: float = parameter(
-        0.2,
-        "standard deviation of a component's worth over its distance from what the cameras look at",
-        unit="viewing distance",
-        exclusive_minimum=0.0,
     )

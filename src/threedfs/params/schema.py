@@ -89,6 +89,8 @@ def _field_schema(field: Field, hint: Any) -> dict[str, Any]:
         "exclusiveMinimum": field.metadata["exclusive_minimum"],
         "enum": field.metadata["choices"] and [*field.metadata["choices"]],
     }
+    if "items" in schema and field.default:
+        schema.setdefault("minItems", 1)  # a list that is not empty by default has a use only with values
     where = schema["items"] if "items" in schema else schema
     where.update({name: limit for name, limit in limits.items() if limit is not None})
     if "enum" in where and where is schema and types.NoneType in typing.get_args(hint):

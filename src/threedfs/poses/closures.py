@@ -8,16 +8,74 @@ cover more of the image than one object would.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
+from threedfs.colmap.mapping import Mapped
 from threedfs.colmap.verification import Verified
 from threedfs.geometry.lens import Lens
 from threedfs.geometry.rigid import invert, rotation_angle
 from threedfs.poses.continuity import camera_centres
+from threedfs.poses.matcher import PairMatcher
 from threedfs.poses.pairs import Pairs
 from threedfs.types import SparsePoints
+
+
+@dataclass(frozen=True)
+class ClosureRule:
+    """Where loop closures are looked for and when they are believed.
+
+    Attributes
+    ----------
+    max_angle : float
+        See `predict_overlap`, radians.
+    min_gap, min_overlap, per_frame : int, float, int
+        See `closure_candidates`.
+    max_rotation, max_direction, min_cover : float
+        See `accept_closures`; angles in radians.
+    """
+
+    max_angle: float
+    min_gap: int
+    min_overlap: float
+    per_frame: int
+    max_rotation: float
+    max_direction: float
+    min_cover: float
+
+
+def find_closures(
+    matcher: PairMatcher, path: Mapped, rule: ClosureRule, note: Callable[[str], None]
+) -> dict[tuple[int, int], Verified]:
+    """Match frames far apart in time where the path predicts a common view, and keep the pairs to be believed.
+
+    Parameters
+    ----------
+    matcher : PairMatcher
+    path : Mapped
+        The path of consecutive frames.
+    rule : ClosureRule
+    note : callable
+        Takes what the user may want to know.
+    """
+    poses = path.model.cam_from_world
+    frames, overlap = predict_overlap(path.model.points, path.lens, poses, max_angle=rule.max_angle)
+    candidates = closure_candidates(
+        frames, overlap, min_gap=rule.min_gap, min_overlap=rule.min_overlap, per_frame=rule.per_frame
+    )
+    closures = accept_closures(
+        matcher.frames.pixels,
+        matcher.verify(candidates, path.lens),
+        poses,
+        matcher.frames.shape,
+        max_rotation=rule.max_rotation,
+        max_direction=rule.max_direction,
+        min_cover=rule.min_cover,
+    )
+    note(f"{len(closures)} of {len(candidates)} candidates for loop closure agree with the path")
+    return closures
 
 
 def predict_overlap(

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 
@@ -57,3 +59,20 @@ def turns_around(cam_from_world: np.ndarray) -> float:
     x, y = ((centres - middle) @ directions[:2].T).T
     angle = np.unwrap(np.arctan2(y, x))
     return float((angle.max() - angle.min()) / (2 * np.pi))
+
+
+def measure_path(times: np.ndarray, cam_from_world: Mapping[int, np.ndarray], spacing: float) -> dict[str, float]:
+    """Return the figures of a video's path: `step_ratio` and `turns` (see `step_ratio`, `turns_around`).
+
+    Parameters
+    ----------
+    times : (N,) float64
+        Of all frames, s.
+    cam_from_world : mapping of int to (4, 4) float64
+        Poses of those that have one, by frame number.
+    spacing : float
+        Seconds between two samples of the path.
+    """
+    numbers = sorted(cam_from_world)
+    path = np.array([cam_from_world[number] for number in numbers])
+    return {"step_ratio": step_ratio(times[numbers], path, spacing), "turns": turns_around(path)}

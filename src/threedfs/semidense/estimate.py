@@ -9,7 +9,7 @@ import numpy as np
 
 from threedfs.geometry.projection import inside, project
 from threedfs.semidense.gradient import find_textured, image_gradient, to_grey
-from threedfs.semidense.observe import SearchRule, observe_neighbour
+from threedfs.semidense.observe import TEMPLATE_MARGIN, SearchRule, observe_neighbour
 from threedfs.semidense.pair import relate
 from threedfs.semidense.prior import spread_sparse
 from threedfs.semidense.regularise import regularise
@@ -71,7 +71,7 @@ def estimate_semidense(
     bounds = (1 / keyframe.far, 1 / keyframe.near)
     grey = to_grey(image)
     gradient_u, gradient_v = image_gradient(grey)
-    searched = find_textured(grey, valid, rule.min_gradient)
+    searched = find_textured(grey, valid, rule.min_gradient, TEMPLATE_MARGIN)
     pixels, depth = project(keyframe.view, sparse_points)
     shown = inside(keyframe.view.camera, pixels)
     mean, variance = spread_sparse(

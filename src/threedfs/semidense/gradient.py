@@ -17,7 +17,7 @@ def image_gradient(grey: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return along_u.astype(np.float32), along_v.astype(np.float32)
 
 
-def find_textured(grey: np.ndarray, valid: np.ndarray, min_gradient: float) -> np.ndarray:
+def find_textured(grey: np.ndarray, valid: np.ndarray, min_gradient: float, margin: int) -> np.ndarray:
     """Find pixels whose largest gradient over 3x3 reaches a threshold, away from the border of the valid image.
 
     Parameters
@@ -26,6 +26,8 @@ def find_textured(grey: np.ndarray, valid: np.ndarray, min_gradient: float) -> n
     valid : (H, W) bool
     min_gradient : float
         Grey levels per pixel.
+    margin : int
+        Pixels around, in both axes, that must be valid too: what the search reads around a pixel.
 
     Returns
     -------
@@ -33,8 +35,6 @@ def find_textured(grey: np.ndarray, valid: np.ndarray, min_gradient: float) -> n
     """
     along_u, along_v = image_gradient(grey)
     strongest = cv2.dilate(np.hypot(along_u, along_v), np.ones((3, 3), np.uint8))
-    # The search needs two samples on either side, and no gradient across the border of the valid image.
-    interior = cv2.erode(
-        valid.astype(np.uint8), np.ones((7, 7), np.uint8), borderType=cv2.BORDER_CONSTANT, borderValue=0
-    )
+    reach = np.ones((2 * margin + 1, 2 * margin + 1), np.uint8)
+    interior = cv2.erode(valid.astype(np.uint8), reach, borderType=cv2.BORDER_CONSTANT, borderValue=0)
     return (strongest >= min_gradient) & (interior > 0)

@@ -5,6 +5,7 @@ Both live in one module because numba's cache does not notice edits in the modul
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 import numpy as np
@@ -15,6 +16,12 @@ FOUND, NOT_SEARCHED, NOT_FOUND = 0, 1, 2
 
 _REACH = 2
 """Samples on either side of the pixel: 5 in all."""
+
+_LEAST_RATE, _GREATEST_RATE = 0.4, 2.5
+"""Pixels along the line in the neighbour per pixel in the keyframe, between which the images can be compared."""
+
+TEMPLATE_MARGIN = math.ceil(_REACH / _LEAST_RATE) + 1
+"""Pixels of the keyframe around the searched one from which the samples may be interpolated."""
 
 _MAX_SPAN = 250.0
 """Greatest length of the searched segment, in pixels of the neighbour: five samples are not distinct on more."""
@@ -44,6 +51,17 @@ def _sample(image, u, v):
     upper = (1 - a) * image[row, column] + a * image[row, column + 1]
     lower = (1 - a) * image[row + 1, column] + a * image[row + 1, column + 1]
     return (1 - b) * upper + b * lower
+
+
+@njit(cache=True)
+def _is_known(valid, u, v):
+    """Say whether the four pixels that `_sample` reads lie on the image and are valid."""
+    height, width = valid.shape
+    if not (0 <= u < width - 1 and 0 <= v < height - 1):
+        return False
+    column, row = int(u), int(v)
+    upper = valid[row, column] and valid[row, column + 1]
+    return upper and valid[row + 1, column] and valid[row + 1, column + 1]
 
 
 @njit(cache=True)
@@ -148,7 +166,7 @@ def search_line(grey, gradient_u, gradient_v, other, other_valid, u, v, low, hig
     xa, ya, za = _transfer(infinite, baseline, u, v, middle)
     xb, yb, zb = _transfer(infinite, baseline, u + line_u, v + line_v, middle)
     rate = (xb / zb - xa / za) * step_u + (yb / zb - ya / za) * step_v
-    if abs(rate) < 0.4 or abs(rate) > 2.5:
+    if abs(rate) < _LEAST_RATE or abs(rate) > _GREATEST_RATE:
         return nothing
     scale = 1 / rate
     height, width = grey.shape
@@ -164,12 +182,11 @@ def search_line(grey, gradient_u, gradient_v, other, other_valid, u, v, low, hig
     # Samples run two steps past either end for the window and one more for the parabola.
     count = places + 2 * (_REACH + 1)
     samples = np.empty(count)
-    other_height, other_width = other.shape
     for k in range(count):
         su = x0 + (k - _REACH - 1) * step_u
         sv = y0 + (k - _REACH - 1) * step_v
         samples[k] = np.nan
-        if 0 <= su < other_width - 1 and 0 <= sv < other_height - 1 and other_valid[int(sv), int(su)]:
+        if _is_known(other_valid, su, sv):
             samples[k] = _sample(other, su, sv)
 
     differences = np.empty(places + 2)

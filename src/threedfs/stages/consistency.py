@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from pathlib import Path
 
+from threedfs.errors import UserError
 from threedfs.fusion.consistency import ComparisonRule, check_consistency, rate_confidence
 from threedfs.io.consistency import ConsistencyMap, write_consistency
 from threedfs.io.depth_maps import read_depth_map
@@ -21,9 +22,21 @@ def run(
     params: ConsistencyParams,
     job: Job,
 ) -> None:
-    """Read all depth maps, a few at a time; write how far each pixel of each agrees with the others."""
+    """Read all depth maps, a few at a time; write how far each pixel of each agrees with the others.
+
+    Raises
+    ------
+    UserError
+        If a keyframe has no depth map.
+    """
     views = [entry.view for entry in read_keyframes(keyframes).values()]
     paths = {path.name.removesuffix(".zarr.zip"): path for path in depth}
+    missing = [view.name for view in views if view.name not in paths]
+    if missing:
+        raise UserError(
+            f"{keyframes}: expected a depth map for each of its {len(views)} keyframes, found none for "
+            f"{', '.join(missing)}; run again, rule depth writes them."
+        )
     agreements = check_consistency(
         views,
         lambda rank: read_depth_map(paths[views[rank].name]).depth,

@@ -99,7 +99,7 @@ def run(
     maps = {path.name.removesuffix(".zarr.zip"): path for path in depth}
     if mesh_truth is not None:
         exact = read_mesh(mesh_truth)
-        figures += _score_depth_by_mesh(exact, maps, truth, selected, solved, store, params)
+        figures += _score_depth_by_mesh(exact, maps, truth, selected, solved, params)
         aligned = Mesh(truth.from_scene.apply(surface.vertices), surface.faces)
         error = measure_mesh(aligned, exact, params.mesh_thresholds, params.surface_samples, generator)
         figures += mesh_figures(error)
@@ -188,7 +188,6 @@ def _score_depth_by_mesh(
     truth: _Truth,
     selected: Mapping[str, Keyframe],
     solved: Poses,
-    store: FrameStore,
     params: EvaluateParams,
 ) -> list[Figure]:
     renderer = MeshRenderer(exact)

@@ -6,13 +6,14 @@ from pathlib import Path
 
 import numpy as np
 
+from threedfs.errors import UserError
 from threedfs.frames.masks import find_masks
 from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import write_keyframes
 from threedfs.io.points import read_points
 from threedfs.io.poses import read_poses
 from threedfs.job import Job
-from threedfs.keyframes.depth_range import expect_depth_range
+from threedfs.keyframes.depth_range import LEAST_POINTS, expect_depth_range
 from threedfs.keyframes.neighbours import NeighbourRule, choose_neighbours
 from threedfs.keyframes.sectors import cluster_photos, score_frames, split_sequence
 from threedfs.keyframes.selection import choose_keyframes, viewing_directions
@@ -36,7 +37,8 @@ def run(
     Raises
     ------
     UserError
-        If a keyframe has fewer than 10 sparse points in view, or no mask belongs to a posed frame.
+        If no frame can be a keyframe, or one with a mask cannot, for want of points in view or of neighbours; or if
+        no mask belongs to a posed frame.
     """
     store = read_frames(undistorted)
     views = read_poses(poses).views
@@ -44,14 +46,23 @@ def run(
     names = [view.name for view in views]
     masked = {} if masks is None else find_masks(masks, names, numbered=store.ordered)
     annotated = np.array([name in masked for name in names])
+    # Frames with a mask stay, so that what is wrong with them is told.
+    usable = np.flatnonzero((visibility.in_view.sum(axis=1) >= LEAST_POINTS) | annotated)
+    blind = [names[frame] for frame in np.setdiff1d(np.arange(len(names)), usable)]
+    _note_left_out(job, blind, "too few sparse points in view")
+    if len(usable) == 0:
+        raise UserError(
+            f"No frame has {LEAST_POINTS} sparse points in view; expected cameras that look at the sparse points; "
+            "check that the given cameras belong to these frames."
+        )
     score = score_frames(visibility, params.distance_weight, params.usage_weight)
     divide = split_sequence if store.ordered else cluster_photos
     sharpness = dict(zip(store.names, store.sharpness, strict=True))
     chosen = choose_keyframes(
-        sector=divide(score, params.new_keyframe_score),
-        directions=viewing_directions(views, visibility.xyz),
-        sharpness=np.array([sharpness[name] for name in names]),
-        forced=annotated,
+        sector=divide(score[np.ix_(usable, usable)], params.new_keyframe_score),
+        directions=viewing_directions([views[frame] for frame in usable], visibility.xyz),
+        sharpness=np.array([sharpness[names[frame]] for frame in usable]),
+        forced=annotated[usable],
         count=params.max_keyframes,
         max_gap=params.max_gap,
     )
@@ -64,14 +75,33 @@ def run(
         min_overlap=params.min_overlap,
         min_shared=params.min_shared,
     )
-    entries = []
-    for frame in job.progress.track(chosen, "keyframes"):
+    entries, alone = [], []
+    for frame in job.progress.track(usable[chosen], "keyframes"):
         near, far = expect_depth_range(visibility.depth[frame], params.near_factor, params.far_factor, names[frame])
         neighbours = tuple(views[other] for other in choose_neighbours(visibility, frame, rule))
-        entries.append(Keyframe(views[frame], neighbours, near, far))
+        if neighbours:
+            entries.append(Keyframe(views[frame], neighbours, near, far))
+        elif annotated[frame]:
+            raise UserError(
+                f"keyframe {names[frame]}: expected frames that see its points from another place, got none; remove "
+                "its mask, or film so that the camera moves."
+            )
+        else:
+            alone.append(names[frame])
+    _note_left_out(job, alone, "points that no frame sees from another place")
+    if not entries:
+        raise UserError(
+            "No frame sees its points from another place, so there is no depth; expected a camera that moves around "
+            "the object; check the given cameras, or film again."
+        )
     write_keyframes(keyframes, entries, job.header)
     fewest = min(len(entry.neighbours) for entry in entries)
     job.progress.note(
         f"{len(entries)} keyframes of {len(views)} frames, {int(annotated.sum())} of them annotated; "
         f"at least {fewest} neighbours each"
     )
+
+
+def _note_left_out(job: Job, names: list[str], reason: str) -> None:
+    if names:
+        job.progress.note(f"no keyframes, because of {reason}: {', '.join(names)}")

@@ -93,7 +93,8 @@ def perform(
 
     The key of an action is the digest of: stage, code, parameters, seed, wildcards, content of the inputs, versions of
     the libraries that the code imports. Threads, paths and the name of the sequence do not enter it. The stage's module
-    (and with it the numeric libraries) is imported only when the store has no such action.
+    (and with it the numeric libraries) is imported only when the store has no such action. Kernels that it compiles are
+    kept in the store, apart for every state of the code.
 
     Parameters
     ----------
@@ -135,7 +136,7 @@ def perform(
     job = Job(progress=progress, header=action.header, threads=threads, seed=seed)
     with _scratch_folder(store / "scratch", action.key) as folder:
         built = {name: folder / name / path.name for name, path in outputs.items()}
-        _run_stage(action, inputs, built, wildcards, job)
+        _run_stage(action, inputs, built, wildcards, store / "kernels", job)
         sizes = {name: _size(path) for name, path in built.items()}
         contents = {name: objects.take_in(path) for name, path in built.items()}
     made = {
@@ -177,11 +178,17 @@ def _identify(
 
 
 def _run_stage(
-    action: Action, inputs: Inputs, outputs: Mapping[str, Path], wildcards: Mapping[str, str], job: Job
+    action: Action,
+    inputs: Inputs,
+    outputs: Mapping[str, Path],
+    wildcards: Mapping[str, str],
+    kernels: Path,
+    job: Job,
 ) -> None:
     for path in outputs.values():
         path.parent.mkdir(parents=True)
     _limit_threads(job.threads)
+    _keep_kernels(kernels / digest_value(action.maker)[:16])
     run = importlib.import_module(action.stage).run
     given = {} if action.params is None else {"params": action.params}
     run(**inputs, **outputs, **wildcards, **given, job=job)
@@ -230,6 +237,14 @@ def _limit_threads(threads: int) -> None:
     for variable in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
         os.environ[variable] = "1"
     os.environ["NUMBA_NUM_THREADS"] = str(threads)
+
+
+def _keep_kernels(folder: Path) -> None:
+    """Have numba keep what it compiles in `folder`, which only one state of the code may use.
+
+    Of a kernel that calls kernels of other files, numba notices edits in its own file only.
+    """
+    os.environ["NUMBA_CACHE_DIR"] = os.path.abspath(folder)
 
 
 def _size(path: Path) -> int:

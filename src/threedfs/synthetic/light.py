@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from threedfs.synthetic.raycast import RayCaster
-from threedfs.synthetic.vectors import dot, normalise
+from threedfs.geometry.raycast import RayCaster
+from threedfs.geometry.vectors import dot, normalise
 
 
 @dataclass(frozen=True)

@@ -6,11 +6,11 @@ import numpy as np
 
 from threedfs.errors import UserError
 from threedfs.geometry.projection import pixel_grid, project
-from threedfs.synthetic.raycast import Hits, RayCaster
+from threedfs.geometry.raycast import Hits, RayCaster
+from threedfs.geometry.vectors import dot, normalise
 from threedfs.synthetic.scene import Scene
 from threedfs.synthetic.shadow import CastLight
 from threedfs.synthetic.table import enter_box
-from threedfs.synthetic.vectors import dot, normalise
 from threedfs.types import View
 
 # Supersampling resolves a little more than the pixel: textures keep detail down to this share of it.

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from threedfs.geometry.raycast import RayCaster
 from threedfs.synthetic.light import lamp_visibility, openness
-from threedfs.synthetic.raycast import RayCaster
 from threedfs.synthetic.scene import Scene
 
 # Share of the ambient light that the table throws back up at the object.

@@ -144,21 +144,6 @@ def woven(warp: Colour, weft: Colour, thread: float, seed: int = 0) -> Texture:
     return texture
 
 
-def tiled(colour: Colour, grout: Colour, size: float, joint: float, seed: int = 0) -> Texture:
-    """Make square tiles of edge `size` with hardly any texture, joints `joint` wide."""
-
-    def texture(points: np.ndarray, footprint: np.ndarray) -> np.ndarray:
-        u, v = points[:, 0] / size, points[:, 1] / size
-        tone = hash_cells(np.floor(u), np.floor(v), seed=seed)
-        gap = np.minimum(np.minimum(u % 1, 1 - u % 1), np.minimum(v % 1, 1 - v % 1)) * size
-        line = np.clip((joint / 2 - gap) / np.maximum(footprint, joint / 8) + 0.5, 0, 1)
-        cloud = 1 + 0.08 * (tone - 0.5) + 0.05 * fractal_noise(points, footprint, 0.15, 5, 0.6, seed + 1)
-        dirt = 1 + 0.5 * fractal_noise(points, footprint, 0.01, 4, 0.7, seed + 2)
-        return mix(np.asarray(colour) * cloud[:, None], np.asarray(grout) * dirt[:, None], line)
-
-    return texture
-
-
 def printed(paper: Colour, ink: Colour, line: float, seed: int = 0) -> Texture:
     """Make a printed page in its own x, y: lines of glyphs `line` apart, headings, and pictures between."""
 

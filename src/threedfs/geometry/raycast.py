@@ -8,7 +8,7 @@ import numpy as np
 import trimesh
 from trimesh.ray.ray_pyembree import RayMeshIntersector
 
-from threedfs.synthetic.vectors import dot
+from threedfs.geometry.vectors import dot
 from threedfs.types import Mesh
 
 

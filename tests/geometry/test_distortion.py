@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from threedfs.frames.distortion import distort, turning_radius, undistort
+from threedfs.geometry.distortion import distort, turning_radius, undistort
 
 LENSES = [(0.0, 0.0), (0.2, 0.0), (-0.3, 0.0), (-0.3, 0.1), (0.1, -0.05), (-0.05, 0.08), (0.0, 0.2), (0.0, -0.2)]
 

@@ -1,0 +1,88 @@
+"""Draw the README's pictures from the results of a sequence.
+
+    python docs/make_pictures.py results/sample docs/pictures/sample.png
+
+Four keyframes side by side; from top to bottom the frame with the mask's outline, the depth (near is red), the
+normals of the depth, and the mesh as the same camera sees it.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import cv2
+import numpy as np
+
+from threedfs.geometry.projection import normals_from_depth, pixel_grid
+from threedfs.geometry.raycast import RayCaster
+from threedfs.io.depth_maps import read_depth_map
+from threedfs.io.frames import read_frames
+from threedfs.io.images import write_png
+from threedfs.io.keyframes import read_keyframes
+from threedfs.io.meshes import read_mesh
+from threedfs.io.volumes import read_silhouettes
+from threedfs.types import Keyframe, Mesh
+
+COLUMNS, WIDTH = 4, 1400
+
+
+def outline(image: np.ndarray, mask: np.ndarray) -> np.ndarray:
+    """Draw the mask's outline in green."""
+    contours, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)
+    return cv2.drawContours(image.copy(), contours, -1, (0, 255, 0), 2)
+
+
+def colour_depth(depth: np.ndarray, keyframe: Keyframe) -> np.ndarray:
+    """Colour inverse depth over the keyframe's expected range."""
+    near, far = 1 / keyframe.near, 1 / keyframe.far
+    level = np.clip((1 / depth - far) / (near - far), 0, 1)
+    return cv2.applyColorMap((np.nan_to_num(level) * 255).astype(np.uint8), cv2.COLORMAP_TURBO)[..., ::-1]
+
+
+def colour_normals(normals: np.ndarray) -> np.ndarray:
+    """Show normals that face the camera as colours: x red, y green, towards the camera blue."""
+    return (np.nan_to_num(normals * [0.5, 0.5, -0.5] + 0.5) * 255).clip(0, 255).astype(np.uint8)
+
+
+def shade(mesh: Mesh, keyframe: Keyframe) -> np.ndarray:
+    """Render the mesh with one lamp beside the camera."""
+    view, camera = keyframe.view, keyframe.view.camera
+    u, v = pixel_grid(camera)
+    rotation = view.cam_from_world[:3, :3]
+    rays = np.stack([(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, np.ones_like(u)], -1) @ rotation
+    hits = RayCaster(mesh).first_hits(np.broadcast_to(view.centre, (u.size, 3)), rays.reshape(-1, 3))
+    corners = mesh.vertices[mesh.faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.maximum(np.linalg.norm(normals, axis=1, keepdims=True), 1e-30)
+    triangle = hits.triangle.reshape(u.shape)
+    facing = (normals[np.maximum(triangle, 0)] @ rotation.T) @ np.array([-0.3, -0.4, -0.85])
+    grey = np.where(triangle >= 0, np.clip(facing, 0.08, 1) * 255, 30).astype(np.uint8)
+    return np.repeat(grey[..., None], 3, axis=-1)
+
+
+def main(results: Path, picture: Path) -> None:
+    """Draw one picture."""
+    frames = read_frames(results / "02_poses/undistorted.zarr.zip")
+    keyframes = read_keyframes(results / "03_keyframes/keyframes.json")
+    silhouettes = read_silhouettes(results / "11_object/fused_sdf/silhouettes.zarr.zip")
+    mesh = read_mesh(results / "11_object/fused_sdf/mesh.ply")
+    names = list(keyframes)
+    columns = []
+    for name in names[:: max(1, len(names) // COLUMNS)][:COLUMNS]:
+        keyframe = keyframes[name]
+        depth = read_depth_map(results / f"06_depth/{name}.zarr.zip").depth
+        rows = [
+            outline(frames.image(name), silhouettes[name]),
+            colour_depth(depth, keyframe),
+            colour_normals(normals_from_depth(keyframe.view.camera, depth)),
+            shade(mesh, keyframe),
+        ]
+        columns.append(np.vstack(rows))
+    sheet = np.hstack(columns)
+    size = (WIDTH, round(sheet.shape[0] * WIDTH / sheet.shape[1]))
+    write_png(picture, cv2.resize(sheet, size, interpolation=cv2.INTER_AREA))
+
+
+if __name__ == "__main__":
+    main(Path(sys.argv[1]), Path(sys.argv[2]))
