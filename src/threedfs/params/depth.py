@@ -96,7 +96,7 @@ class DepthParams:
         minimum=0,
     )
     confidence_falloff: float = parameter(
-        20.0,
+        15.0,
         "how fast trust falls with the least photometric error (paper: 5)",
         symbol="c_conf",
         equation="Eq. 11",
