@@ -5,7 +5,7 @@ import numpy as np
 import scenes
 
 from threedfs.depth.candidates import space_candidates
-from threedfs.depth.cost_volume import compute_cost_volume, plane_homography
+from threedfs.depth.cost_volume import choose_patch_radius, compute_cost_volume, plane_homography
 from threedfs.depth.zncc import MISSING, accumulate_cost, describe_patches, prepare_grey
 from threedfs.geometry.projection import backproject, project
 from threedfs.geometry.rigid import make_transform
@@ -145,3 +145,12 @@ def test_a_plane_behind_the_neighbour_is_missing():
         missing_cost=0.5,
     )
     assert np.all(cost == 0.5)
+
+
+def test_patches_grow_with_the_gaps_between_views():
+    """Angles of 5, 21 and 60 degrees at a point 1 unit ahead give radii 1, 2 and 4, the largest."""
+    reference = scenes.views()[0]
+    for degrees, radius in ((5, 1), (21, 2), (60, 4)):
+        angle = np.radians(degrees)
+        turned = make_transform(np.eye(3), [-np.sin(angle), 0, np.cos(angle) - 1])
+        assert choose_patch_radius(reference, [View("turned", scenes.CAMERA, turned)], 1.0) == radius

@@ -5,8 +5,8 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from threedfs.errors import UserError
-from threedfs.evaluate.pose_error import align_poses, camera_centres, measure_poses
-from threedfs.geometry.rigid import look_at
+from threedfs.evaluate.pose_error import align_poses, measure_poses
+from threedfs.geometry.rigid import camera_centres, look_at
 from threedfs.geometry.similarity import Similarity
 
 TARGET = np.array([0.3, -0.2, 0.1])

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from threedfs.geometry.rigid import look_at, make_transform
-from threedfs.poses.continuity import camera_centres, step_ratio, turns_around
+from threedfs.geometry.rigid import camera_centres, look_at, make_transform
+from threedfs.poses.continuity import step_ratio, turns_around
 
 
 def path_of(angles):

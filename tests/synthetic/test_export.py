@@ -5,13 +5,13 @@ import json
 import av
 import numpy as np
 import pytest
+from ball import tiny_film
 
 from threedfs.geometry.projection import project
 from threedfs.geometry.rigid import invert
 from threedfs.io.images import read_mask
 from threedfs.io.meshes import read_mesh
 from threedfs.progress import Progress
-from threedfs.synthetic.ball import tiny_film
 from threedfs.synthetic.export import write_film
 from threedfs.synthetic.film import shoot_all
 from threedfs.synthetic.render import Renderer

@@ -2,13 +2,13 @@
 
 import numpy as np
 import pytest
+from ball import CAMERA, CENTRE, GREY, RADIUS, ball_scene, view_from
 from scipy.ndimage import binary_dilation, binary_erosion
 
 from threedfs.errors import UserError
 from threedfs.geometry.projection import project
 from threedfs.geometry.raycast import RayCaster
 from threedfs.geometry.rigid import make_transform
-from threedfs.synthetic.ball import CAMERA, CENTRE, GREY, RADIUS, ball_scene, view_from
 from threedfs.synthetic.film import expose
 from threedfs.synthetic.light import Light
 from threedfs.synthetic.render import Renderer, pixel_rays

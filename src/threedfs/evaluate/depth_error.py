@@ -48,21 +48,18 @@ class DepthError:
     covered: float
 
 
-def pair_depths(depth: np.ndarray, truth: np.ndarray, on: np.ndarray | None = None, erosion: int = 0) -> DepthPairs:
+def pair_depths(depth: np.ndarray, truth: np.ndarray, erosion: int = 0) -> DepthPairs:
     """Pair the depths of two maps (H, W) of one unit, NaN where missing.
 
     Parameters
     ----------
     depth, truth : (H, W) float
-    on : (H, W) bool, optional
-        Where to compare; wherever the truth is known without it.
     erosion : int
-        Pixels taken off the border of that region, where one pixel sees two surfaces.
+        Pixels taken off the border of where the truth is known: there one pixel sees two surfaces.
     """
-    region = np.isfinite(truth) if on is None else on
+    region = np.isfinite(truth)
     if erosion:
         region = binary_erosion(region, np.ones((3, 3), bool), iterations=erosion)
-    region = region & np.isfinite(truth)
     estimate, exact = depth[region].astype(np.float64), truth[region].astype(np.float64)
     known = np.isfinite(estimate)
     return DepthPairs(estimate[known], exact[known], int(np.count_nonzero(~known)))

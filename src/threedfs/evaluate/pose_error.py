@@ -1,4 +1,4 @@
-"""Error of camera poses against true ones, and the shape of a camera path."""
+"""Error of camera poses against true ones."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import numpy as np
 from scipy.spatial.distance import pdist
 
 from threedfs.errors import UserError
-from threedfs.geometry.rigid import rotation_angle
+from threedfs.geometry.rigid import camera_centres, rotation_angle
 from threedfs.geometry.similarity import Similarity, align
 
 
@@ -28,12 +28,6 @@ class PoseError:
 
     centre: np.ndarray
     rotation: np.ndarray
-
-
-def camera_centres(cam_from_world: Sequence[np.ndarray]) -> np.ndarray:
-    """Return the centres (N, 3) of poses (N, 4, 4)."""
-    cam_from_world = np.reshape(cam_from_world, (-1, 4, 4))
-    return -np.einsum("nij,ni->nj", cam_from_world[:, :3, :3], cam_from_world[:, :3, 3])
 
 
 def align_poses(poses: Sequence[np.ndarray], truth: Sequence[np.ndarray]) -> Similarity:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 
@@ -19,7 +21,7 @@ def invert(b_from_a: np.ndarray) -> np.ndarray:
     Examples
     --------
     >>> t = make_transform(np.eye(3), [1, 2, 3])
-    >>> (invert(t) @ t == np.eye(4)).all()
+    >>> bool((invert(t) @ t == np.eye(4)).all())
     True
     """
     rotation = b_from_a[:3, :3].T
@@ -29,6 +31,12 @@ def invert(b_from_a: np.ndarray) -> np.ndarray:
 def apply(b_from_a: np.ndarray, points_a: np.ndarray) -> np.ndarray:
     """Map points (..., 3) by a (4, 4) affine transform."""
     return points_a @ b_from_a[:3, :3].T + b_from_a[:3, 3]
+
+
+def camera_centres(cam_from_world: Sequence[np.ndarray]) -> np.ndarray:
+    """Return the centres (N, 3), world, of poses (N, 4, 4)."""
+    cam_from_world = np.reshape(cam_from_world, (-1, 4, 4))
+    return -np.einsum("nij,ni->nj", cam_from_world[:, :3, :3], cam_from_world[:, :3, 3])
 
 
 def rotation_angle(rotation: np.ndarray) -> np.ndarray:

@@ -25,7 +25,13 @@ class DepthParams:
         equation="Section 4.2",
         choices=("power", "inverse", "log"),
     )
-    patch_radius: int = parameter(1, "patches are (2 radius + 1)^2 pixels", unit="px", minimum=1, maximum=7)
+    patch_radius: int = parameter(
+        0,
+        "patches are (2 radius + 1)^2 pixels; 0 chooses 1 to 4 by the angle between neighbours (paper: 1)",
+        unit="px",
+        minimum=0,
+        maximum=7,
+    )
     variance_floor: float = parameter(
         2.0,
         "added to the variance of each patch: what noise alone would give (paper: none)",

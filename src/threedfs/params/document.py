@@ -80,7 +80,7 @@ _KEYS = {
     "sequences.<name>.truth.depth": "folder of reference depth maps",
     "methods": "how the object is cut out: `fused_sdf`",
     "seed": "of every random choice",
-    "store": "folder of finished work",
+    "store": "folder of finished work, and of the kernels compiled for it",
 }
 
 

@@ -16,8 +16,7 @@ import numpy as np
 from threedfs.colmap.mapping import Mapped
 from threedfs.colmap.verification import Verified
 from threedfs.geometry.lens import Lens
-from threedfs.geometry.rigid import invert, rotation_angle
-from threedfs.poses.continuity import camera_centres
+from threedfs.geometry.rigid import camera_centres, invert, rotation_angle
 from threedfs.poses.matcher import PairMatcher
 from threedfs.poses.pairs import Pairs
 from threedfs.types import SparsePoints

@@ -6,10 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-
-def camera_centres(cam_from_world: np.ndarray) -> np.ndarray:
-    """Return the centres (N, 3) of poses (N, 4, 4), world."""
-    return -np.einsum("nij,ni->nj", cam_from_world[:, :3, :3], cam_from_world[:, :3, 3])
+from threedfs.geometry.rigid import camera_centres
 
 
 def step_ratio(times: np.ndarray, cam_from_world: np.ndarray, spacing: float) -> float:

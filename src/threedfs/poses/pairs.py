@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from threedfs.poses.continuity import camera_centres
+from threedfs.geometry.rigid import camera_centres
 
 Pairs = list[tuple[int, int]]
 

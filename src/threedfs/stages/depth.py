@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 
 from threedfs.depth.candidates import space_candidates
-from threedfs.depth.cost_volume import compute_cost_volume
+from threedfs.depth.cost_volume import choose_patch_radius, compute_cost_volume
 from threedfs.depth.solver import optimise_depth
 from threedfs.depth.weights import edge_weight, measurement_weight, photometric_confidence, texture_confidence
 from threedfs.depth.zncc import describe_patches, prepare_grey
@@ -37,19 +37,22 @@ def run(
     measured = read_semidense(semidense)
     grey = prepare_grey(frames.image(keyframe), frames.valid)
     candidates = space_candidates(entry.near, entry.far, params.candidates, params.spacing)
+    typical = 2 / (1 / entry.near + 1 / entry.far)
+    radius = params.patch_radius or choose_patch_radius(entry.view, entry.neighbours, typical)
+    job.progress.note(f"patches of {2 * radius + 1}x{2 * radius + 1} px")
     cost_volume = compute_cost_volume(
         entry.view,
         grey,
         entry.neighbours,
         lambda view: prepare_grey(frames.image(view.name), frames.valid),
         candidates,
-        patch_radius=params.patch_radius,
+        patch_radius=radius,
         variance_floor=params.variance_floor,
         missing_cost=params.missing_cost,
         track=lambda views: job.progress.track(views, "neighbour"),
     )
     min_cost = cost_volume.min(axis=0)
-    patches = describe_patches(grey, params.patch_radius, params.variance_floor)
+    patches = describe_patches(grey, radius, params.variance_floor)
     confidence = photometric_confidence(min_cost, params.confidence_falloff)
     confidence *= texture_confidence(patches.variance, params.texture_half_variance)
     confidence[~patches.complete] = 0

@@ -114,12 +114,6 @@ def build_solid(parts: Sequence[Part], low: Sequence[float], high: Sequence[floa
     return Solid(mesh, normals, tuple(part.material for part in parts), material_of)
 
 
-def solid_from_mesh(mesh: Mesh, material: Material) -> Solid:
-    """Make a solid of one material from a given closed mesh that stands on z = 0."""
-    surface = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
-    return Solid(mesh, np.array(surface.vertex_normals), (material,), lambda points: np.zeros(len(points), int))
-
-
 def _field_normals(field: Field, points: np.ndarray, step: float) -> np.ndarray:
     """Outward unit normals by central differences."""
     steps = step * np.eye(3)

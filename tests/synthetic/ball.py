@@ -12,7 +12,7 @@ from threedfs.synthetic.path import HandheldPath
 from threedfs.synthetic.room import Room
 from threedfs.synthetic.scene import Scene
 from threedfs.synthetic.sensor import Sensor
-from threedfs.synthetic.solid import Material, solid_from_mesh
+from threedfs.synthetic.solid import Material, Solid
 from threedfs.synthetic.table import Table
 from threedfs.synthetic.textures import plain, speckled
 from threedfs.types import Camera, Mesh, View
@@ -23,16 +23,18 @@ CAMERA = Camera(160, 120, 150.0, 150.0, 79.5, 59.5)
 GREY = plain((0.4, 0.4, 0.4), mottle=0.0)
 
 
-def ball_mesh(subdivisions: int = 5) -> Mesh:
+def ball_solid(subdivisions: int, material: Material) -> Solid:
     """Make a ball of radius `RADIUS` that touches the table at the origin; its vertices lie on the sphere."""
     ball = trimesh.creation.icosphere(subdivisions, RADIUS)
-    return Mesh(np.array(ball.vertices) + CENTRE, np.array(ball.faces, np.int64))
+    mesh = Mesh(np.array(ball.vertices) + CENTRE, np.array(ball.faces, np.int64))
+    surface = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False)
+    return Solid(mesh, np.array(surface.vertex_normals), (material,), lambda points: np.zeros(len(points), int))
 
 
 def ball_scene(material: Material | None = None, light: Light | None = None, subdivisions: int = 5) -> Scene:
     """Put the ball on a grey table; the lamp is above, on the side of +x unless another is given."""
     return Scene(
-        solid_from_mesh(ball_mesh(subdivisions), material or Material(GREY)),
+        ball_solid(subdivisions, material or Material(GREY)),
         Table((0.8, 0.8), Material(GREY)),
         Room((-2, -2, -0.7), (2, 2, 1.8), speckled((0.3, 0.3, 0.3), (0.1, 0.1, 0.1), 0.05, 0.5)),
         light or Light((0.8, 0.0, 1.2), 0.1, (2.0, 2.0, 2.0), (0.2, 0.2, 0.2)),
