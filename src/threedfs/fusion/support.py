@@ -56,7 +56,7 @@ class SupportPlane:
     noise : float
         Robust standard deviation of that surface from the plane, scene units.
     extent : float
-        Mean over the three axes of the standard deviation of the points on the plane, scene units (Sec. 3.4.1).
+        Mean over the three axes of the standard deviation of the points on the plane, scene units (Sec. 3.4.2).
     """
 
     plane: Plane
@@ -84,7 +84,7 @@ def find_support(
     Where the fused surface has no plane, or a rough one that the semi-dense points tell more sharply, theirs is
     taken (`settle_support`).
 
-    Differs from the paper: Sec. 3.4.1 fits one plane to all points of the zero level surface, which takes a
+    Differs from the paper: Sec. 3.4.2 fits one plane to all points of the zero level surface, which takes a
     wall, or a compromise, where the floor is not the largest surface.
 
     Parameters

@@ -32,7 +32,7 @@ class LocateParams(ComponentSettings):
         maximum=90.0,
     )
     plane_min_share: float = parameter(
-        0.3, "least share of the nearby upward-facing surface on the support plane", minimum=0.0, maximum=1.0
+        0.15, "least share of the nearby upward-facing surface on the support plane", minimum=0.0, maximum=1.0
     )
     plane_candidates: int = parameter(4000, "planes tried", minimum=1)
     clearance: float = parameter(
@@ -40,7 +40,7 @@ class LocateParams(ComponentSettings):
         "height above the plane from which voxels may belong to the object",
         unit="voxel",
         symbol="tau",
-        equation="Sec. 3.4.1",
+        equation="Sec. 3.4.2",
         minimum=0.0,
     )
     bridge: int = parameter(
