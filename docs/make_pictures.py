@@ -1,6 +1,6 @@
 """Draw the README's pictures from the results of a sequence.
 
-    python docs/make_pictures.py results/sample docs/pictures/sample.png
+    python docs/make_pictures.py results/sample docs/pictures/sample.jpg
 
 Four keyframes side by side; from top to bottom the frame with the mask's outline, the depth (near is red), the
 normals of the depth, and the mesh as the same camera sees it.
@@ -18,7 +18,6 @@ from threedfs.geometry.projection import normals_from_depth, pixel_grid
 from threedfs.geometry.raycast import RayCaster
 from threedfs.io.depth_maps import read_depth_map
 from threedfs.io.frames import read_frames
-from threedfs.io.images import write_png
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
 from threedfs.io.volumes import read_silhouettes
@@ -81,7 +80,8 @@ def main(results: Path, picture: Path) -> None:
         columns.append(np.vstack(rows))
     sheet = np.hstack(columns)
     size = (WIDTH, round(sheet.shape[0] * WIDTH / sheet.shape[1]))
-    write_png(picture, cv2.resize(sheet, size, interpolation=cv2.INTER_AREA))
+    small = cv2.resize(sheet, size, interpolation=cv2.INTER_AREA)
+    cv2.imwrite(str(picture), small[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 88])
 
 
 if __name__ == "__main__":
