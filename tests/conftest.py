@@ -8,6 +8,8 @@ import shutil
 import time
 from pathlib import Path
 
+import pytest
+
 SOURCES = Path(__file__).resolve().parents[1] / "src"
 KEPT_SECONDS = 7 * 86400.0
 
@@ -28,3 +30,13 @@ def pytest_configure(config):
         if folder.stat().st_mtime < time.time() - KEPT_SECONDS:
             shutil.rmtree(folder, ignore_errors=True)
     os.environ["NUMBA_CACHE_DIR"] = str(present)
+
+
+@pytest.fixture(autouse=True)
+def environment_of_its_own():
+    """Undo what a test does to the environment: a stage run in this process sets threads and folders for its own."""
+    before = dict(os.environ)
+    yield
+    for name in set(os.environ) - set(before):
+        del os.environ[name]
+    os.environ.update(before)
