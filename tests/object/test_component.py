@@ -5,7 +5,7 @@ import pytest
 
 from threedfs.geometry.grid import voxel_centres
 from threedfs.object.box import enclose_object, measure_thickness
-from threedfs.object.component import choose_component, mark_points
+from threedfs.object.component import choose_component, choose_standing_component, mark_points
 from threedfs.object.field import add_foot, height_above, mask_field
 from threedfs.types import Plane, VoxelGrid
 
@@ -130,3 +130,21 @@ def test_field_is_negative_in_the_object_alone():
     assert (field[15, 17:24, 6:14] == np.float32(0.25)).all()
     assert field[20, 20, 5] == pytest.approx(-0.5)
     assert field[20, 20, 4] == pytest.approx(0.5, abs=1e-5), "half a voxel below the plane"
+
+
+def test_an_uneven_floor_does_not_join_the_object_with_the_wall():
+    """Exact: a bump of the floor two voxels high bridges object and wall; twice the clearance parts them."""
+    grid = VoxelGrid(np.zeros(3), 1.0, (30, 30, 30))
+    interior = np.zeros(grid.shape, bool)
+    interior[12:18, 12:18, :15] = True
+    interior[28:, :, :] = True
+    interior[:, 14:16, :3] = True
+    height = np.broadcast_to(np.arange(30, dtype=np.float32), grid.shape)
+    holds = np.zeros(grid.shape, bool)
+    holds[12:18, 12, 2:15] = True
+    settings = dict(clearance=1.5, reach=20.0)
+    fixation = np.array([15.0, 15.0, 8.0])
+    chosen = choose_standing_component(interior, height, grid, holds, fixation, doublings=2, **settings)
+    assert chosen.voxels.sum() == 6 * 6 * 11  # heights 4 to 14
+    joined = choose_standing_component(interior, height, grid, holds, fixation, doublings=0, **settings)
+    assert joined.voxels[29].any()

@@ -87,6 +87,56 @@ def choose_component(
     return Component(labels == best, int(support[best - 1]), len(supported) - 1)
 
 
+def choose_standing_component(
+    interior: np.ndarray,
+    height: np.ndarray,
+    grid: VoxelGrid,
+    holds: np.ndarray,
+    fixation: np.ndarray,
+    *,
+    clearance: float,
+    doublings: int,
+    reach: float,
+    bridge: int = 0,
+) -> Component | None:
+    """Choose the component above the support, raising the clearance while the chosen one reaches the grid's border.
+
+    A support without texture comes out uneven, and what sticks out of the clearance may join the object with the
+    walls around. Where no clearance parts them, the choice at the first one stands.
+
+    Parameters
+    ----------
+    interior, holds : (nx, ny, nz) bool
+    height : (nx, ny, nz) float32
+        Above the support plane, scene units.
+    grid, fixation, reach, bridge
+        See `choose_component`.
+    clearance : float
+        First height from which voxels may belong to the object, scene units.
+    doublings : int
+        Times that it is doubled at most.
+
+    Returns
+    -------
+    Component or None
+        None where no component above the first clearance is supported by any point.
+    """
+    first = None
+    for attempt in range(doublings + 1):
+        high = height > clearance * 2**attempt
+        chosen = choose_component(interior & high, grid, holds & high, fixation, reach=reach, bridge=bridge)
+        if chosen is None:
+            return first
+        if not _touches_border(chosen.voxels):
+            return chosen
+        first = first or chosen
+    return first
+
+
+def _touches_border(voxels: np.ndarray) -> bool:
+    return any(bool(np.take(voxels, end, axis=axis).any()) for axis in range(3) for end in (0, -1))
+
+
 def _count_support(labels: np.ndarray, holds: np.ndarray, count: int) -> np.ndarray:
     """Count the voxels with points at or beside each label 1..count."""
     padded = np.pad(labels, 1)

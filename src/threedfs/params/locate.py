@@ -43,6 +43,12 @@ class LocateParams(ComponentSettings):
         equation="Sec. 3.4.2",
         minimum=0.0,
     )
+    clearance_doublings: int = parameter(
+        3,
+        "times that clearance is doubled while the object is joined with what lies at the border of the region",
+        minimum=0,
+        maximum=8,
+    )
     bridge: int = parameter(
         1, "pieces up to twice so far apart count as one object when its box is drawn", unit="voxel", minimum=0
     )

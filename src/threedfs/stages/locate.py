@@ -16,7 +16,7 @@ from threedfs.io.points import read_points
 from threedfs.io.volumes import Support, read_volume, write_support
 from threedfs.job import Job
 from threedfs.object.box import enclose_object, measure_thickness
-from threedfs.object.component import choose_component, mark_points
+from threedfs.object.component import choose_standing_component, mark_points
 from threedfs.object.field import height_above
 from threedfs.params.locate import LocateParams
 
@@ -63,12 +63,14 @@ def run(
         generator=generator,
     )
     height = height_above(found.plane, grid)
-    high = height > params.clearance * grid.spacing
-    chosen = choose_component(
-        (volume.sdf < 0) & (volume.seen > 0) & high,
+    chosen = choose_standing_component(
+        (volume.sdf < 0) & (volume.seen > 0),
+        height,
         grid,
-        holds & high,
+        holds,
         fixation,
+        clearance=params.clearance * grid.spacing,
+        doublings=params.clearance_doublings,
         reach=params.object_reach * distance,
         bridge=params.bridge,
     )
