@@ -62,6 +62,8 @@ def remove_abandoned(folder: Path, pattern: str = "*") -> None:
 
 
 def _is_running(process: int) -> bool:
+    if _is_zombie(process):
+        return False
     try:
         os.kill(process, 0)
     except ProcessLookupError:
@@ -69,3 +71,12 @@ def _is_running(process: int) -> bool:
     except PermissionError:
         return True
     return True
+
+
+def _is_zombie(process: int) -> bool:
+    """Say whether a process has ended but is still listed, because nobody has asked for its exit status."""
+    try:
+        status = Path(f"/proc/{process}/stat").read_text(encoding="ascii", errors="replace")
+    except OSError:
+        return False
+    return status.rpartition(")")[2].split()[0] in ("Z", "X")
