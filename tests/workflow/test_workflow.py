@@ -11,6 +11,8 @@ import subprocess
 import time
 from collections import Counter
 
+from threedfs.store.files import remove_abandoned
+
 RULES = (
     "calibrate frames poses undistort keyframes semidense edges depth consistency fuse_scene locate fuse_object "
     "object evaluate collect all"
