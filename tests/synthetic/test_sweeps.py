@@ -33,7 +33,7 @@ def test_round_cones_are_the_union_of_single_ones():
     b[1:3] = a[1:3] + 0.1
     single = [fields.sphere(a[0], radii[:, 0].max())]
     single += [fields.round_cone(a[m], b[m], radii[0, m], radii[1, m]) for m in range(1, 6)]
-    field = sweeps.round_cones(a, b, radii[0], radii[1])
+    field = sweeps.round_cones(zip(a, b, *radii, strict=True))
     np.testing.assert_allclose(field(POINTS), fields.union(*single)(POINTS), atol=1e-12)
 
 

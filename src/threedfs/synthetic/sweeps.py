@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 from numba import njit
@@ -34,9 +34,9 @@ def spline(knots: Sequence[Sequence[float]], pieces: int = 8, closed: bool = Fal
     return curve if closed else np.concatenate([curve, knots[-1:]])
 
 
-def round_cones(a: np.ndarray, b: np.ndarray, radius_a: np.ndarray, radius_b: np.ndarray) -> Field:
-    """Join many round cones: the hulls of balls around `a` and `b` (M, 3), radii (M,), one pair each."""
-    rows = np.column_stack([a, b, radius_a, radius_b]).astype(np.float64)
+def round_cones(cones: Iterable[tuple[Sequence[float], Sequence[float], float, float]]) -> Field:
+    """Join many round cones at little cost: (a, b, radius_a, radius_b) each, as for `fields.round_cone`."""
+    rows = np.array([(*a, *b, radius_a, radius_b) for a, b, radius_a, radius_b in cones], np.float64)
     return lambda points: _round_cones(np.ascontiguousarray(points, np.float64), rows)
 
 
@@ -44,7 +44,7 @@ def tube(knots: Sequence[Sequence[float]], radii: Sequence[float], pieces: int =
     """Make a limb along the spline through knots (N, 3); its radius goes smoothly through `radii` (N,)."""
     curve = spline(np.column_stack([knots, radii]), pieces)
     centres, radius = curve[:, :3], curve[:, 3]
-    return round_cones(centres[:-1], centres[1:], radius[:-1], radius[1:])
+    return round_cones(zip(centres[:-1], centres[1:], radius[:-1], radius[1:], strict=True))
 
 
 def prism(outline: np.ndarray, low: float, high: float, axis: int = 2, rounding: float = 0.0) -> Field:
