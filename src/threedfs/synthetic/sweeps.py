@@ -86,7 +86,13 @@ def _round_cones(points: np.ndarray, cones: np.ndarray) -> np.ndarray:
             slope, length = 0.0, 0.0
         scale = 1 / max(length, 1e-12)
         lean = slope / np.sqrt(1 - slope * slope)
+        reach = length / 2 + max(radius, radius - slope * length)  # of the ball around it
+        mx, my, mz = ax + bx * scale * length / 2, ay + by * scale * length / 2, az + bz * scale * length / 2
         for n in range(len(points)):
+            limit = out[n] + reach
+            gap = (points[n, 0] - mx) ** 2 + (points[n, 1] - my) ** 2 + (points[n, 2] - mz) ** 2
+            if limit < 0 or gap >= limit * limit:
+                continue
             x, y, z = points[n, 0] - ax, points[n, 1] - ay, points[n, 2] - az
             along = (x * bx + y * by + z * bz) * scale if length > 0 else 0.0
             across = np.sqrt(max(x * x + y * y + z * z - along * along, 0.0))

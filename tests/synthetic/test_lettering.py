@@ -1,0 +1,51 @@
+"""Exact tests of the lettering."""
+
+import numpy as np
+
+from threedfs.synthetic.lettering import ADVANCE, CHARACTERS, WIDTH, encode, letter_ink, text_ink
+
+
+def dots(letter):
+    """Sample a letter at the middles of its dots, rows from the top down."""
+    v, u = np.meshgrid((np.arange(7)[::-1] + 0.5) / 7, (np.arange(5) + 0.5) / 7, indexing="ij")
+    code = np.full(35, CHARACTERS.index(letter))
+    return letter_ink(code, u.ravel(), v.ravel(), np.zeros(35)).reshape(7, 5)
+
+
+def test_letters_are_what_was_drawn():
+    assert ["".join(".#"[int(dot)] for dot in row) for row in dots("F")] == [
+        "#####",
+        "#....",
+        "#....",
+        "####.",
+        "#....",
+        "#....",
+        "#....",
+    ]
+    assert dots(" ").sum() == 0
+    assert np.array_equal(dots("L")[-1], np.ones(5))
+
+
+def test_no_two_letters_look_alike():
+    drawn = {dots(letter).tobytes() for letter in CHARACTERS}
+    assert len(drawn) == len(CHARACTERS)
+
+
+def test_text_is_a_row_of_letters_around_its_middle():
+    rng = np.random.default_rng(0)
+    u, v = rng.uniform(0.001, WIDTH - 0.001, 200), rng.uniform(0, 1, 200)
+    footprint = np.full(200, 0.02)
+    start = -(3 * ADVANCE - (ADVANCE - WIDTH)) / 2
+    for place, letter in enumerate("KEY"):
+        shown = text_ink("key", 2 * (start + place * ADVANCE + u), 2 * (v - 0.5), 2.0, 2 * footprint)
+        np.testing.assert_allclose(shown, letter_ink(np.full(200, encode(letter)[0]), u, v, footprint), atol=1e-9)
+    assert not text_ink("KEY", np.array([-5.0, 5.0]), np.zeros(2), 1.0, np.zeros(2)).any()
+
+
+def test_small_letters_become_grey_of_the_same_tone():
+    u, v = np.random.default_rng(1).uniform(0, 1, (2, 20000))
+    code = np.full(20000, CHARACTERS.index("B"))
+    near = letter_ink(code, u * WIDTH, v, np.zeros(20000))
+    far = letter_ink(code, u * WIDTH, v, np.ones(20000))
+    assert np.ptp(far) == 0
+    np.testing.assert_allclose(near.mean(), far.mean(), atol=0.08)  # strokes are rounded at their ends
