@@ -3,6 +3,7 @@
 import numpy as np
 
 from threedfs.synthetic.lettering import ADVANCE, CHARACTERS, WIDTH, encode, letter_ink, text_ink
+from threedfs.synthetic.textures import lettered, plain
 
 
 def dots(letter):
@@ -49,3 +50,17 @@ def test_small_letters_become_grey_of_the_same_tone():
     far = letter_ink(code, u * WIDTH, v, np.ones(20000))
     assert np.ptp(far) == 0
     np.testing.assert_allclose(near.mean(), far.mean(), atol=0.08)  # strokes are rounded at their ends
+
+
+def test_lettering_is_printed_line_by_line_where_it_belongs():
+    paper, ink = plain((0.8, 0.7, 0.6), mottle=0.0), (0.1, 0.0, 0.2)
+    right, up = np.array([0.0, 1, 0]), np.array([0.0, 0, 1])
+    texture = lettered(paper, ink, ["AB", "C"], 0.01, (0.5, 0.2, 0.3), right, up)
+    # The two middles of a line of one letter and of two, 1.6 heights apart, and a place beside the text.
+    offsets = np.array([(0.0, -0.008), (0.0, 0.008), (0.03, 0.0)])
+    points = np.array([0.5, 0.2, 0.3]) + offsets[:, :1] * right + offsets[:, 1:] * up
+    cover = np.array([text_ink("C", 0 * points[:1, 0], np.zeros(1), 0.01, np.zeros(1))[0], 0.0, 0.0])
+    expected = (1 - cover[:, None]) * (0.8, 0.7, 0.6) + cover[:, None] * ink
+    np.testing.assert_allclose(texture(points, np.zeros(3)), expected, atol=1e-12)
+    stroke = np.array([(0.5, 0.2 - 0.5 * 0.01 * WIDTH + 0.5 / 7 * 0.01, 0.3 - 0.008)])  # the left stroke of the C
+    np.testing.assert_allclose(texture(stroke, np.zeros(1)), [ink], atol=1e-12)

@@ -64,3 +64,12 @@ def test_prism_of_an_outline_with_a_notch_leaves_it_open():
     for corners in (outline, outline[::-1]):
         value = sweeps.prism(corners, -1, 1)(np.array([(1, 0.9, 0), (1, 0.3, 0), (0.2, 0.5, 0)]))
         assert value[0] > 0 > value[1] and value[2] == pytest.approx(-0.2)
+
+
+def test_ribbon_has_its_thickness_along_the_curve():
+    turn = np.linspace(0, np.pi, 200)
+    circle = np.column_stack([np.cos(turn), np.sin(turn)])
+    sheet = sweeps.prism(sweeps.ribbon(circle, 0.2), -1, 1)
+    radius = np.array([0.85, 0.95, 1.0, 1.06, 1.2])
+    points = np.column_stack([0 * radius, radius, 0 * radius])
+    np.testing.assert_allclose(sheet(points), np.abs(radius - 1) - 0.1, atol=2e-4)

@@ -71,6 +71,13 @@ def prism(outline: np.ndarray, low: float, high: float, axis: int = 2, rounding:
     return field
 
 
+def ribbon(curve: np.ndarray, thickness: float) -> np.ndarray:
+    """Return the outline (2 N, 2) of a strip of sheet along an open curve (N, 2), for `prism`."""
+    along = np.gradient(curve, axis=0)
+    across = np.column_stack([-along[:, 1], along[:, 0]]) / np.linalg.norm(along, axis=1, keepdims=True)
+    return np.concatenate([curve + thickness / 2 * across, (curve - thickness / 2 * across)[::-1]])
+
+
 @njit(cache=True)
 def _round_cones(points: np.ndarray, cones: np.ndarray) -> np.ndarray:
     """Distance to the nearest of the cones (M, 8); the formula of `fields.round_cone`."""

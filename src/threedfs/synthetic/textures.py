@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from threedfs.synthetic.lettering import text_ink
 from threedfs.synthetic.noise import cell_noise, fractal_noise, hash_cells
 from threedfs.synthetic.solid import Texture
 
@@ -93,6 +94,43 @@ def scaly(colour: Colour, groove: Colour, size: float, seed: int = 0) -> Texture
         share = 0.48 + (raised - 0.48) * visible  # its mean from afar
         shade = 1 + 0.9 * (name - 0.5) * visible
         return np.clip(mix(groove, colour, share) * (shade * wear)[:, None], 0, 1)
+
+    return texture
+
+
+def lettered(
+    under: Texture,
+    ink: Colour,
+    lines: Sequence[str],
+    height: float,
+    origin: Colour,
+    right: Colour,
+    up: Colour,
+) -> Texture:
+    """Print lines of capitals, `height` high, on another texture.
+
+    Parameters
+    ----------
+    under : Texture
+    ink : (3,) float
+    lines : sequence of str
+        From the top down; each is centred.
+    height : float
+        Of a letter; lines are 1.6 times as far apart.
+    origin, right, up : (3,) float
+        Middle of the text, and unit vectors along and across its lines. Depth does not count: print only on
+        parts of which one side shows.
+    """
+
+    def texture(points: np.ndarray, footprint: np.ndarray) -> np.ndarray:
+        local = points - np.asarray(origin)
+        u, v = local @ np.asarray(right, float), local @ np.asarray(up, float)
+        colour = under(points, footprint)
+        for index, line in enumerate(lines):
+            drop = ((len(lines) - 1) / 2 - index) * 1.6 * height
+            cover = text_ink(line, u, v - drop, height, footprint)
+            colour = colour + cover[:, None] * (np.asarray(ink) - colour)
+        return colour
 
     return texture
 
