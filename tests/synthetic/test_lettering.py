@@ -64,3 +64,5 @@ def test_lettering_is_printed_line_by_line_where_it_belongs():
     np.testing.assert_allclose(texture(points, np.zeros(3)), expected, atol=1e-12)
     stroke = np.array([(0.5, 0.2 - 0.5 * 0.01 * WIDTH + 0.5 / 7 * 0.01, 0.3 - 0.008)])  # the left stroke of the C
     np.testing.assert_allclose(texture(stroke, np.zeros(1)), [ink], atol=1e-12)
+    behind = stroke - [(0.02, 0, 0)]
+    np.testing.assert_allclose(texture(behind, np.zeros(1)), [(0.8, 0.7, 0.6)])

@@ -16,6 +16,7 @@ from scipy.spatial import ConvexHull
 from threedfs.geometry.raycast import RayCaster
 from threedfs.synthetic.objects.dragon import make_dragon
 from threedfs.synthetic.objects.keyboard import make_keyboard
+from threedfs.synthetic.objects.paper_punch import make_paper_punch
 from threedfs.synthetic.objects.stapler import make_stapler
 from threedfs.synthetic.solid import Solid
 
@@ -39,6 +40,7 @@ class Object:
 OBJECTS = [
     Object(make_dragon, (0.13, 0.15, 0.18), (0.16, 0.18, 0.22), 0.003, (0.2, 0.010), 0.0024),
     Object(make_keyboard, (0.25, 0.105, 0.020), (0.27, 0.115, 0.028), 0.025, (0.2, 0.028), 0.0018),
+    Object(make_paper_punch, (0.11, 0.075, 0.085), (0.13, 0.09, 0.095), 0.006, (0.15, 0.006), 0.0018),
     Object(make_stapler, (0.038, 0.13, 0.045), (0.043, 0.15, 0.055), 0.004, (0.15, 0.008), 0.0016),
 ]
 every_object = pytest.mark.parametrize("case", OBJECTS, ids=lambda case: case.name)

@@ -73,3 +73,10 @@ def test_ribbon_has_its_thickness_along_the_curve():
     radius = np.array([0.85, 0.95, 1.0, 1.06, 1.2])
     points = np.column_stack([0 * radius, radius, 0 * radius])
     np.testing.assert_allclose(sheet(points), np.abs(radius - 1) - 0.1, atol=2e-4)
+
+
+def test_rounded_rectangle_is_a_box_with_round_corners():
+    plate = sweeps.prism(sweeps.rounded_rectangle((0.1, -0.2), (0.5, 0.3), 0.15, 200), -9, 9)
+    core = fields.offset(fields.box((0.1, -0.2, 0), (0.35, 0.15, 9)), 0.15)
+    outside = core(POINTS) > -0.1
+    np.testing.assert_allclose(plate(POINTS[outside]), core(POINTS[outside]), atol=1e-5)

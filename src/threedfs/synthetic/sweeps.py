@@ -78,6 +78,21 @@ def ribbon(curve: np.ndarray, thickness: float) -> np.ndarray:
     return np.concatenate([curve + thickness / 2 * across, (curve - thickness / 2 * across)[::-1]])
 
 
+def rounded_rectangle(centre: Sequence[float], half: Sequence[float], radius: float, pieces: int = 16) -> np.ndarray:
+    """Return the outline (4 (pieces + 1), 2) of a rectangle of half sizes `half` with round corners, for `prism`."""
+    turn = np.linspace(0, np.pi / 2, pieces + 1)
+    corners = [
+        np.asarray(centre) + (np.asarray(half) - radius) * sign + radius * np.column_stack([np.cos(arc), np.sin(arc)])
+        for sign, arc in (
+            ((1, 1), turn),
+            ((-1, 1), turn + np.pi / 2),
+            ((-1, -1), turn + np.pi),
+            ((1, -1), turn - np.pi / 2),
+        )
+    ]
+    return np.concatenate(corners)
+
+
 @njit(cache=True)
 def _round_cones(points: np.ndarray, cones: np.ndarray) -> np.ndarray:
     """Distance to the nearest of the cones (M, 8); the formula of `fields.round_cone`."""

@@ -118,17 +118,18 @@ def lettered(
     height : float
         Of a letter; lines are 1.6 times as far apart.
     origin, right, up : (3,) float
-        Middle of the text, and unit vectors along and across its lines. Depth does not count: print only on
-        parts of which one side shows.
+        Middle of the text, and unit vectors along and across its lines. What lies farther than `height` in front
+        of or behind its plane is left alone.
     """
 
     def texture(points: np.ndarray, footprint: np.ndarray) -> np.ndarray:
         local = points - np.asarray(origin)
         u, v = local @ np.asarray(right, float), local @ np.asarray(up, float)
+        near = np.abs(local @ np.cross(right, up)) < height
         colour = under(points, footprint)
         for index, line in enumerate(lines):
             drop = ((len(lines) - 1) / 2 - index) * 1.6 * height
-            cover = text_ink(line, u, v - drop, height, footprint)
+            cover = near * text_ink(line, u, v - drop, height, footprint)
             colour = colour + cover[:, None] * (np.asarray(ink) - colour)
         return colour
 
