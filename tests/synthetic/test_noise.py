@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from threedfs.synthetic.noise import fractal_noise, hash_cells
-from threedfs.synthetic.textures import plain, printed, speckled, streaked, wood, woven
+from threedfs.synthetic.noise import cell_noise, fractal_noise, hash_cells
+from threedfs.synthetic.textures import plain, printed, scaly, speckled, streaked, wood, woven
 
 POINTS = np.column_stack([np.random.default_rng(0).uniform(-3, 3, (20000, 2)), np.zeros(20000)])
 
@@ -50,11 +50,24 @@ def test_cells_have_their_own_uniform_numbers():
     assert np.all(np.abs(counts - 4000) < 300)  # five standard deviations of a count of 4000
 
 
+def test_cells_divide_space_by_the_nearest_seed():
+    points = np.random.default_rng(2).uniform(-1, 1, (20000, 3))
+    first, second, name = cell_noise(points, 0.5, seed=6)
+    assert np.all(first <= second) and first.max() < 1.3  # a seed in every unit cube, off its faces
+    again, _, same = cell_noise(points + 1e-9, 0.5, seed=6)
+    inner = second - first > 1e-6
+    np.testing.assert_array_equal(name[inner], same[inner])
+    np.testing.assert_allclose(first, again, atol=1e-8)  # distances pass smoothly from cell to cell
+    # About 4^3 cells of a half in a cube of edge 2, and those that reach in from outside.
+    assert 64 <= len(np.unique(name)) <= 6**3
+
+
 @pytest.mark.parametrize(
     "texture",
     [
         plain((0.5, 0.2, 0.1)),
         speckled((0.1, 0.1, 0.1), (0.9, 0.9, 0.9), 0.01, 0.4),
+        scaly((0.1, 0.4, 0.1), (0.02, 0.05, 0.02), 0.01),
         streaked((0.8, 0.8, 0.7), (0.3, 0.3, 0.3), 0.002, 0.02),
         wood((0.4, 0.3, 0.1), (0.1, 0.06, 0.03), 0.1),
         woven((0.1, 0.2, 0.3), (0.6, 0.6, 0.5), 0.002),

@@ -14,6 +14,10 @@ from threedfs.errors import UserError
 from threedfs.synthetic.fields import Field, half_space, intersection, union
 from threedfs.types import Mesh
 
+# Cells along the edge of a block that is sampled as a whole, and the steepest slope that fields may have.
+_BLOCK = 4
+_STEEPEST = 2.0
+
 # Colour of points (N, 3) with pixel footprints (N,): linear RGB (N, 3) in [0, 1].
 Texture = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
@@ -89,8 +93,7 @@ def build_solid(parts: Sequence[Part], low: Sequence[float], high: Sequence[floa
     whole = intersection(union(*(part.field for part in parts)), half_space((0, 0, 0), (0, 0, -1)))
     low, high = np.asarray(low, float) - 2 * spacing, np.asarray(high, float) + 2 * spacing
     axes = [np.arange(a, b, spacing) for a, b in zip(low, high, strict=True)]
-    points = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1)
-    values = whole(points.reshape(-1, 3)).reshape(points.shape[:3])
+    values = _sample_near_surface(whole, axes, spacing)
     rim = [np.take(values, end, axis=axis).min() for axis in range(3) for end in (0, -1)]
     if min(rim) <= 0:
         raise UserError(f"The parts of an object must lie in the box {low} to {high}; enlarge the box.")
@@ -114,6 +117,35 @@ def build_solid(parts: Sequence[Part], low: Sequence[float], high: Sequence[floa
 
     normals = _field_normals(whole, mesh.vertices, spacing / 4)
     return Solid(mesh, normals, tuple(part.material for part in parts), material_of)
+
+
+def _sample_near_surface(field: Field, axes: Sequence[np.ndarray], spacing: float) -> np.ndarray:
+    """Evaluate a field on a grid: exactly on all edges that its surface crosses, elsewhere with the right sign.
+
+    A block of cells is left at the value of its middle where the surface is too far to reach it.
+    """
+    shape = tuple(len(axis) for axis in axes)
+    nodes = np.stack(np.meshgrid(*(np.arange(_BLOCK),) * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+    blocks = np.stack(np.meshgrid(*(np.arange(0, n, _BLOCK) for n in shape), indexing="ij"), axis=-1).reshape(-1, 3)
+    start = np.array([axis[0] for axis in axes])
+    middle = _in_chunks(field, start + (blocks + (_BLOCK - 1) / 2) * spacing)
+    values = middle.reshape([-(-n // _BLOCK) for n in shape])
+    for axis, n in enumerate(shape):
+        values = np.repeat(values, _BLOCK, axis=axis).take(range(n), axis=axis)
+    # From the middle to the farthest node, and one edge more.
+    reach = np.sqrt(3) * (_BLOCK + 1) / 2 * spacing
+    near = blocks[np.abs(middle) < _STEEPEST * reach]
+    index = (near[:, None] + nodes).reshape(-1, 3)
+    i, j, k = index[np.all(index < shape, axis=1)].T
+    points = np.column_stack([axes[0][i], axes[1][j], axes[2][k]])
+    values[i, j, k] = _in_chunks(field, points)
+    return values
+
+
+def _in_chunks(field: Field, points: np.ndarray) -> np.ndarray:
+    """Evaluate a field on pieces that fit into the processor's cache."""
+    pieces = np.array_split(points, len(points) // 20000 + 1)
+    return np.concatenate([field(piece) for piece in pieces])
 
 
 def _field_normals(field: Field, points: np.ndarray, step: float) -> np.ndarray:

@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from threedfs.synthetic.noise import fractal_noise, hash_cells
+from threedfs.synthetic.noise import cell_noise, fractal_noise, hash_cells
 from threedfs.synthetic.solid import Texture
 
 Colour = Sequence[float]
@@ -78,6 +78,21 @@ def streaked(colour: Colour, groove: Colour, across: float, along: float, seed: 
         scaled = points / (across, across, along)
         value = fractal_noise(scaled, footprint / across, 2.0, 4, 0.6, seed)
         return np.clip(mix(colour, groove, 0.5 + 1.4 * value), 0, 1)
+
+    return texture
+
+
+def scaly(colour: Colour, groove: Colour, size: float, seed: int = 0) -> Texture:
+    """Make scales of uneven shade, about `size` wide, lighter in the middle, with grooves between them."""
+
+    def texture(points: np.ndarray, footprint: np.ndarray) -> np.ndarray:
+        first, second, name = cell_noise(points, size, seed)
+        raised = np.clip((second - first - 0.04) / 0.22, 0, 1) * (1.1 - 0.5 * first)
+        wear = 1 + 0.5 * fractal_noise(points, footprint, 8 * size, 6, 0.75, seed + 10)
+        visible = fade(size, footprint)
+        share = 0.48 + (raised - 0.48) * visible  # its mean from afar
+        shade = 1 + 0.9 * (name - 0.5) * visible
+        return np.clip(mix(groove, colour, share) * (shade * wear)[:, None], 0, 1)
 
     return texture
 
