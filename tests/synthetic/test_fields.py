@@ -60,15 +60,3 @@ def test_place_moves_and_mirror_repeats():
     assert bar(np.array([[0, 0.9, 2.0]]))[0] < 0 < bar(np.array([[0.9, 0, 2.0]]))[0]
     pair = fields.mirror_x(fields.sphere((0.5, 0, 0), 0.2))
     np.testing.assert_allclose(pair(POINTS), pair(POINTS * [-1, 1, 1]))
-
-
-def test_many_round_cones_are_the_union_of_each():
-    rng = np.random.default_rng(1)
-    a = rng.uniform(-0.8, 0.8, (40, 3))
-    b = a + rng.normal(0, 0.3, a.shape)
-    length = np.linalg.norm(b - a, axis=1)
-    radius_a, radius_b = rng.uniform(0.01, 0.9, (2, 40)) * length
-    each = [fields.round_cone(*cone) for cone in zip(a, b, radius_a, radius_b, strict=True)]
-    many = fields.round_cones(a, b, radius_a, radius_b)(POINTS)
-    np.testing.assert_allclose(many, fields.union(*each)(POINTS), atol=1e-12)
-    assert (many < 0).any() and (many > 0).any()

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from numba import njit
 
 Field = Callable[[np.ndarray], np.ndarray]
 
@@ -145,41 +144,3 @@ def place(field: Field, translation: Sequence[float], rotation: np.ndarray | Non
 def mirror_x(field: Field) -> Field:
     """Repeat the half x >= 0 of a shape on the other side."""
     return lambda points: field(np.concatenate([np.abs(points[..., :1]), points[..., 1:]], axis=-1))
-
-
-def round_cones(a: np.ndarray, b: np.ndarray, radius_a: np.ndarray, radius_b: np.ndarray) -> Field:
-    """Join many round cones: ends (M, 3) and radii (M,) as of `round_cone`; hundreds are cheap.
-
-    Radii at an end must differ by less than the length of the cone.
-    """
-    a, b = np.ascontiguousarray(a, np.float64), np.ascontiguousarray(b, np.float64)
-    radius_a, radius_b = np.asarray(radius_a, np.float64), np.asarray(radius_b, np.float64)
-    return lambda points: _nearest_cone(np.ascontiguousarray(points, np.float64), a, b, radius_a, radius_b)
-
-
-@njit(cache=True)
-def _nearest_cone(
-    points: np.ndarray, a: np.ndarray, b: np.ndarray, radius_a: np.ndarray, radius_b: np.ndarray
-) -> np.ndarray:
-    """Distance (N,) to the nearest of the cones; most are passed over by the ball around them."""
-    middle, axis = (a + b) / 2, b - a
-    length = np.sqrt((axis**2).sum(axis=1))
-    reach = length / 2 + np.maximum(radius_a, radius_b)
-    slope = (radius_a - radius_b) / length
-    out = np.empty(len(points))
-    for n in range(len(points)):
-        x, y, z = points[n]
-        best = np.inf
-        for m in range(len(a)):
-            square = (x - middle[m, 0]) ** 2 + (y - middle[m, 1]) ** 2 + (z - middle[m, 2]) ** 2
-            limit = best + reach[m]
-            if limit <= 0 or square >= limit * limit:
-                continue
-            u, v, w = x - a[m, 0], y - a[m, 1], z - a[m, 2]
-            along = (u * axis[m, 0] + v * axis[m, 1] + w * axis[m, 2]) / length[m]
-            across = np.sqrt(max(u * u + v * v + w * w - along * along, 0.0))
-            foot = along - across * slope[m] / np.sqrt(1 - slope[m] * slope[m])
-            foot = min(max(foot, 0.0), length[m])
-            best = min(best, np.hypot(across, along - foot) - (radius_a[m] - slope[m] * foot))
-        out[n] = best
-    return out

@@ -12,13 +12,13 @@ from threedfs.synthetic.fields import (
     ellipsoid,
     mirror_x,
     round_cone,
-    round_cones,
     smooth_union,
     sphere,
     union,
 )
 from threedfs.synthetic.noise import fractal_noise
 from threedfs.synthetic.solid import Material, Part, Solid, Texture, build_solid
+from threedfs.synthetic.sweeps import round_cones
 from threedfs.synthetic.textures import Colour, mix, plain, speckled
 
 # The back: an ellipsoid that carries the spines.
@@ -26,13 +26,13 @@ _CENTRE = np.array([0.0, 0.0080, 0.0360])
 _RADII = np.array([0.0430, 0.0470, 0.0385])
 
 
-def make_hedgehog(spacing: float = 0.00145, seed: int = 29) -> Solid:
+def make_hedgehog(spacing: float = 0.0013, seed: int = 29) -> Solid:
     """Make the hedgehog: it stands on z = 0 around the origin and faces -y.
 
     Parameters
     ----------
     spacing : float
-        Edge of a marching cubes cell; sets how fine the mesh is. Above 0.0018 the tips of the spines break off.
+        Edge of a marching cubes cell; sets how fine the mesh is. Above 0.002 the tips of the spines break off.
     seed : int
         Seed of its spines and textures.
     """
@@ -61,7 +61,7 @@ def _back() -> Field:
 def _spines(seed: int) -> Field:
     """Cones on a golden spiral over the back, leaning backwards, each a little its own way."""
     rng = np.random.default_rng(seed)
-    count = 580
+    count = 440
     index = np.arange(count) + 0.5
     height, turn = 1 - 2 * index / count, index * np.pi * (3 - np.sqrt(5))
     ring = np.sqrt(1 - height**2)
@@ -76,11 +76,11 @@ def _spines(seed: int) -> Field:
     outward /= np.linalg.norm(outward, axis=1, keepdims=True)
     lean = outward + np.array([0, 0.55, 0]) + rng.normal(0, 0.16, outward.shape)
     lean /= np.linalg.norm(lean, axis=1, keepdims=True)
-    length = rng.uniform(0.0125, 0.0175, len(root))[:, None]
+    length = rng.uniform(0.0130, 0.0180, len(root))[:, None]
     tip = root + length * lean
-    free = np.minimum(_face()(tip), _ears()(tip)) > 0.0045
-    each = np.ones(free.sum())
-    return round_cones((root - 0.001 * outward)[free], tip[free], 0.0029 * each, 0.0013 * each)
+    free = np.minimum(_face()(tip), _ears()(tip)) > 0.0065
+    ends = zip((root - 0.001 * outward)[free], tip[free], strict=True)
+    return round_cones((start, end, 0.0030, 0.0016) for start, end in ends)
 
 
 def _face() -> Field:
@@ -121,13 +121,11 @@ def _feet() -> Field:
 
 
 def _claws() -> Field:
-    toes = []
+    cones = []
     for x, y in ((0.0230, -0.0455), (0.0340, 0.0192)):
         for side in (-0.0040, 0.0, 0.0040):
-            toes.append((x + side, y, 0.0042, x + 1.4 * side, y - 0.0070, 0.0016))
-    toes = np.array(toes)
-    each = np.ones(len(toes))
-    return mirror_x(round_cones(toes[:, :3], toes[:, 3:], 0.0022 * each, 0.0013 * each))
+            cones.append(((x + side, y, 0.0042), (x + 1.4 * side, y - 0.0070, 0.0016), 0.0024, 0.0016))
+    return mirror_x(round_cones(cones))
 
 
 def _fur(light: Colour, dark: Colour, seed: int) -> Texture:
