@@ -80,7 +80,7 @@ def _spines(seed: int) -> Field:
     tip = root + length * lean
     free = np.minimum(_face()(tip), _ears()(tip)) > 0.0065
     ends = zip((root - 0.001 * outward)[free], tip[free], strict=True)
-    return round_cones((start, end, 0.0030, 0.0016) for start, end in ends)
+    return round_cones((start, end, 0.0030, 0.0017) for start, end in ends)
 
 
 def _face() -> Field:
