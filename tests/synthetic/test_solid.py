@@ -5,7 +5,7 @@ import pytest
 import trimesh
 
 from threedfs.errors import UserError
-from threedfs.synthetic.fields import box, sphere, subtract
+from threedfs.synthetic.fields import box, half_space, intersection, sphere, subtract
 from threedfs.synthetic.objects.gnome import make_gnome
 from threedfs.synthetic.solid import Material, Part, build_solid
 from threedfs.synthetic.textures import plain
@@ -57,6 +57,16 @@ def test_hidden_hollows_are_filled():
     shell = subtract(sphere((0, 0, 0.6), 0.5), sphere((0, 0, 0.6), 0.3))
     solid = build_solid([Part(shell, GREY)], (-0.5, -0.5, 0), (0.5, 0.5, 1.1), 0.05)
     assert surface_of(solid).volume == pytest.approx(4 / 3 * np.pi * 0.5**3, rel=0.02)
+
+
+@pytest.mark.parametrize("normal", [(1, 0.05, 0.1), (0.97, -0.2, 0.13), (0.1, 0.13, 1), (0.2, 1, 0.15)])
+def test_a_surface_that_just_misses_a_lattice_point_is_closed(normal):
+    # The cells around that point give slivers a few nanometres high.
+    for gap in (1e-9, 2e-9, 4e-9):
+        point = np.array([0.01, 0.01, 0.03]) + gap * np.array(normal)
+        cut = intersection(half_space(point, normal), box((0, 0, 0.03), (0.035, 0.035, 0.025)))
+        solid = build_solid([Part(cut, GREY)], (-0.04, -0.04, 0), (0.04, 0.04, 0.06), 0.01)
+        assert surface_of(solid).is_watertight
 
 
 def test_loose_parts_are_refused():

@@ -104,7 +104,9 @@ def build_solid(parts: Sequence[Part], low: Sequence[float], high: Sequence[floa
     # Files hold single precision: what is rendered is then exactly what is shipped.
     vertices = (vertices + low).astype(np.float32).astype(np.float64)
     surface = trimesh.Trimesh(vertices, faces, process=True)
-    surface.update_faces(surface.nondegenerate_faces())
+    # Only faces whose corners fell together: a sliver that keeps three corners holds its neighbours together.
+    corners = np.sort(surface.faces, axis=1)
+    surface.update_faces((corners[:, 0] != corners[:, 1]) & (corners[:, 1] != corners[:, 2]))
     surface.remove_unreferenced_vertices()
     if surface.body_count != 1:
         raise UserError(f"The parts of an object must hang together, got {surface.body_count} pieces.")
