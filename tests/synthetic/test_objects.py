@@ -15,6 +15,9 @@ from scipy.spatial import ConvexHull
 
 from threedfs.geometry.raycast import RayCaster
 from threedfs.synthetic.objects.dragon import make_dragon
+from threedfs.synthetic.objects.godzilla import make_godzilla
+from threedfs.synthetic.objects.hedgehog import make_hedgehog
+from threedfs.synthetic.objects.helmet import make_helmet
 from threedfs.synthetic.objects.keyboard import make_keyboard
 from threedfs.synthetic.objects.paper_punch import make_paper_punch
 from threedfs.synthetic.objects.stapler import make_stapler
@@ -39,6 +42,9 @@ class Object:
 
 OBJECTS = [
     Object(make_dragon, (0.13, 0.15, 0.18), (0.16, 0.18, 0.22), 0.003, (0.2, 0.010), 0.0024),
+    Object(make_godzilla, (0.13, 0.18, 0.19), (0.16, 0.21, 0.21), 0.003, (0.1, 0.008), 0.0024),
+    Object(make_hedgehog, (0.10, 0.13, 0.08), (0.13, 0.16, 0.10), 0.002, (0.3, 0.006), 0.0013),
+    Object(make_helmet, (0.15, 0.19, 0.13), (0.17, 0.21, 0.15), 0.014, (0.5, 0.2), 0.0030),
     Object(make_keyboard, (0.25, 0.105, 0.020), (0.27, 0.115, 0.028), 0.025, (0.2, 0.028), 0.0018),
     Object(make_paper_punch, (0.11, 0.075, 0.085), (0.13, 0.09, 0.095), 0.006, (0.15, 0.006), 0.0018),
     Object(make_stapler, (0.038, 0.13, 0.045), (0.043, 0.15, 0.055), 0.004, (0.15, 0.008), 0.0016),
