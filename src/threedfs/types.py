@@ -70,6 +70,19 @@ class Keyframe:
     near: float
     far: float
 
+    @property
+    def neighbour_angle(self) -> float:
+        """Median angle in degrees between the rays to its camera and to a neighbour's; 0 without neighbours.
+
+        Rays meet on the optical axis, at the harmonic mean of near and far.
+        """
+        if not self.neighbours:
+            return 0.0
+        target = self.view.centre + 2 / (1 / self.near + 1 / self.far) * self.view.cam_from_world[2, :3]
+        rays = np.stack([view.centre - target for view in (self.view, *self.neighbours)])
+        rays /= np.linalg.norm(rays, axis=1, keepdims=True)
+        return float(np.median(np.degrees(np.arccos(np.clip(rays[1:] @ rays[0], -1, 1)))))
+
 
 @dataclass(frozen=True)
 class SparsePoints:

@@ -20,24 +20,18 @@ def plane_homography(reference: View, neighbour: View, depth: float) -> np.ndarr
     return neighbour.camera.px_from_cam @ through_plane @ np.linalg.inv(reference.camera.px_from_cam)
 
 
-def choose_patch_radius(reference: View, neighbours: Sequence[View], depth: float) -> int:
+def choose_patch_radius(neighbour_angle: float) -> int:
     """Choose the patch radius by how far apart the views are: 1 up to 18 degrees, one more each 6 degrees, at most 4.
 
     Small patches are enough, and sharpest, where neighbours are close and many; across wide gaps between photos
     there are few neighbours, and small patches match by chance.
 
-    Parameters
-    ----------
-    reference : View
-    neighbours : sequence of View
-    depth : float
-        Typical depth of the scene, scene units; angles are taken at the point so far along the optical axis.
+    Examples
+    --------
+    >>> choose_patch_radius(8.0), choose_patch_radius(20.0), choose_patch_radius(60.0)
+    (1, 2, 4)
     """
-    target = reference.centre + depth * reference.cam_from_world[2, :3]
-    rays = np.stack([view.centre - target for view in (reference, *neighbours)])
-    rays /= np.linalg.norm(rays, axis=1, keepdims=True)
-    angle = np.degrees(np.arccos(np.clip(rays[1:] @ rays[0], -1, 1)))
-    return int(np.clip(1 + np.ceil((np.median(angle) - 18) / 6), 1, 4))
+    return int(np.clip(1 + np.ceil((neighbour_angle - 18) / 6), 1, 4))
 
 
 def compute_cost_volume(

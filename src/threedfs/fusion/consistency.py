@@ -99,6 +99,7 @@ def compare_depth(
     may_contradict: Callable[[int], np.ndarray],
     rule: ComparisonRule,
     threads: int = 1,
+    targets: Sequence[int] | None = None,
 ) -> Iterator[Agreement]:
     """Compare every depth map once with those of the other views; as `check_consistency`.
 
@@ -106,16 +107,19 @@ def compare_depth(
     ----------
     may_contradict : callable
         Gives, by the rank of a view, the pixels (H, W) bool whose surfaces may speak against others.
+    targets : sequence of int
+        Ranks of the views whose maps are compared; all by default.
     """
     numba.set_num_threads(max(1, min(threads, numba.config.NUMBA_NUM_THREADS)))
     partners = _nearest_views(views, rule.max_views)
-    for start in range(0, len(views), _BLOCK):
-        targets = np.arange(start, min(start + _BLOCK, len(views)))
-        depth = np.stack([read_depth(i) for i in targets]).astype(np.float32)
+    wanted = range(len(views)) if targets is None else targets
+    for start in range(0, len(wanted), _BLOCK):
+        block = np.asarray(wanted[start : start + _BLOCK])
+        depth = np.stack([read_depth(i) for i in block]).astype(np.float32)
         near_depth = np.stack([_local_minimum(item) for item in depth])
         counts = np.zeros((3, *depth.shape), np.uint8)
         free = np.full(depth.shape, np.inf, np.float32)
-        for other in sorted(set().union(*(partners[i] for i in targets))):
+        for other in sorted(set().union(*(partners[i] for i in block))):
             seen = np.asarray(read_depth(other), np.float32)
             _compare(
                 depth,
@@ -123,15 +127,25 @@ def compare_depth(
                 seen,
                 _local_minimum(seen),
                 may_contradict(other),
-                np.stack([_px_from_px(views[other], views[i]) for i in targets]),
-                np.stack([_px_from_px(views[i], views[other]) for i in targets]),
-                np.array([other in partners[i] for i in targets]),
+                np.stack([_px_from_px(views[other], views[i]) for i in block]),
+                np.stack([_px_from_px(views[i], views[other]) for i in block]),
+                np.array([other in partners[i] for i in block]),
                 rule.tolerance,
                 counts,
                 free,
             )
-        for slot in range(len(targets)):
+        for slot in range(len(block)):
             yield Agreement(counts[0, slot], counts[1, slot], counts[2, slot], free[slot])
+
+
+def count_agreeing(
+    views: Sequence[View], read_depth: Callable[[int], np.ndarray], rank: int, *, tolerance: float, max_views: int
+) -> np.ndarray:
+    """Count the views whose depth maps have a surface where that of one view has one, (H, W) uint8."""
+    shape = views[rank].camera.shape
+    rule = ComparisonRule(tolerance, max_views, 0.0)
+    (agreement,) = compare_depth(views, read_depth, lambda _: np.zeros(shape, bool), rule, targets=[rank])
+    return agreement.agree
 
 
 def rate_confidence(

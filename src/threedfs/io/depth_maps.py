@@ -1,4 +1,4 @@
-"""Per-keyframe maps: semi-dense depth, edge strength, dense depth."""
+"""Per-keyframe maps: semi-dense depth, edge strength, stereo patches, dense depth."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from threedfs.io.arrays import read_arrays, write_arrays
-from threedfs.io.schema import DEPTH_MAP, EDGES, SEMIDENSE
+from threedfs.io.schema import DEPTH_MAP, EDGES, SEMIDENSE, STEREO
 
 
 @dataclass(frozen=True)
@@ -25,6 +25,22 @@ class Semidense:
 
     inverse_depth: np.ndarray
     variance: np.ndarray
+
+
+@dataclass(frozen=True)
+class StereoMap:
+    """Slanted patches that match in other views.
+
+    Attributes
+    ----------
+    inverse_depth : (H, W) float32, 1 / scene unit, NaN where there is none
+    slope : (H, W, 2) float32, its change per pixel along columns and rows
+    cost : (H, W) float32, (1 - NCC) / 2 over the views that match best
+    """
+
+    inverse_depth: np.ndarray
+    slope: np.ndarray
+    cost: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -62,6 +78,17 @@ def write_edges(path: Path, strength: np.ndarray, header: Mapping[str, Any]) -> 
 def read_edges(path: Path) -> np.ndarray:
     """Read edge strength, (H, W) float32 in [0, 1]."""
     return read_arrays(path, EDGES)[0]["strength"]
+
+
+def write_stereo(path: Path, stereo: StereoMap, header: Mapping[str, Any]) -> None:
+    """Write slanted patches."""
+    notes = {"inverse_depth": {"unit": "1 / scene unit"}, "slope": {"unit": "1 / (scene unit px)", "axes": "u, v"}}
+    write_arrays(path, STEREO, vars(stereo), header, notes, axes="row, column")
+
+
+def read_stereo(path: Path) -> StereoMap:
+    """Read slanted patches."""
+    return StereoMap(**read_arrays(path, STEREO)[0])
 
 
 def write_depth_map(path: Path, depth_map: DepthMap, header: Mapping[str, Any], **figures: Any) -> None:

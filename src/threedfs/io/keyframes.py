@@ -14,13 +14,17 @@ from threedfs.types import Keyframe
 
 
 def write_keyframes(path: Path, keyframes: Sequence[Keyframe], header: Mapping[str, Any]) -> None:
-    """Write keyframes.json; entries are found under ``keyframes.<name>``."""
+    """Write keyframes.json; entries are found under ``keyframes.<name>``.
+
+    The angle to the neighbours, degrees, is there for the rules: it decides whether a keyframe needs stereo.
+    """
     entries = {
         keyframe.view.name: {
             "view": encode_view(keyframe.view),
             "neighbours": [encode_view(view) for view in keyframe.neighbours],
             "near": keyframe.near,
             "far": keyframe.far,
+            "neighbour_angle": keyframe.neighbour_angle,
         }
         for keyframe in keyframes
     }

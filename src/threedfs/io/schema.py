@@ -13,6 +13,7 @@ POINTS = "threedfs/sparse-points/1"
 KEYFRAMES = "threedfs/keyframes/1"
 SEMIDENSE = "threedfs/semidense/1"
 EDGES = "threedfs/edges/1"
+STEREO = "threedfs/stereo/1"
 DEPTH_MAP = "threedfs/depth-map/1"
 CONSISTENCY = "threedfs/consistency/1"
 VOLUME = "threedfs/volume/1"
@@ -27,6 +28,7 @@ _RULES = {
     KEYFRAMES: "keyframes",
     SEMIDENSE: "semidense",
     EDGES: "edges",
+    STEREO: "stereo or stereo_check",
     DEPTH_MAP: "depth",
     CONSISTENCY: "consistency",
     VOLUME: "fuse_scene, fuse_object or object",

@@ -82,6 +82,22 @@ class DepthParams:
         equation="Section 3.2, item i",
         minimum=0,
     )
+    stereo_angle: float = parameter(
+        18.0,
+        "angle to the neighbours from which checked stereo matches are measurements too (paper: never, 180)",
+        unit="degree",
+        minimum=0,
+        maximum=180,
+    )
+    stereo_deviation: float = parameter(
+        0.02, "standard deviation of a stereo match's inverse depth, relative to it", exclusive_minimum=0
+    )
+    unmatched_trust: float = parameter(
+        0.1,
+        "factor of the trust in the photometric error where stereo found no match: such a minimum may be chance",
+        minimum=0,
+        maximum=1,
+    )
     smoothness: float = parameter(
         1.0,
         "smoothness weight of the first iteration (paper: 0.01)",

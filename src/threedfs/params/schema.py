@@ -18,6 +18,8 @@ STAGES = (
     "undistort",
     "keyframes",
     "semidense",
+    "stereo",
+    "stereo_check",
     "edges",
     "depth",
     "consistency",

@@ -9,10 +9,11 @@ import numpy as np
 
 from threedfs.depth.candidates import space_candidates
 from threedfs.depth.cost_volume import choose_patch_radius, compute_cost_volume
+from threedfs.depth.measurements import merge_measurements
 from threedfs.depth.solver import optimise_depth
 from threedfs.depth.weights import edge_weight, measurement_weight, photometric_confidence, texture_confidence
 from threedfs.depth.zncc import describe_patches, prepare_grey
-from threedfs.io.depth_maps import DepthMap, read_edges, read_semidense, write_depth_map
+from threedfs.io.depth_maps import DepthMap, read_edges, read_semidense, read_stereo, write_depth_map
 from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import read_keyframe
 from threedfs.job import Job
@@ -25,6 +26,7 @@ def run(
     keyframes: Path,
     semidense: Path,
     edges: Path,
+    stereo: Path | None,
     depth: Path,
     keyframe: str,
     params: DepthParams,
@@ -37,8 +39,7 @@ def run(
     measured = read_semidense(semidense)
     grey = prepare_grey(frames.image(keyframe), frames.valid)
     candidates = space_candidates(entry.near, entry.far, params.candidates, params.spacing)
-    typical = 2 / (1 / entry.near + 1 / entry.far)
-    radius = params.patch_radius or choose_patch_radius(entry.view, entry.neighbours, typical)
+    radius = params.patch_radius or choose_patch_radius(entry.neighbour_angle)
     job.progress.note(f"patches of {2 * radius + 1}x{2 * radius + 1} px")
     cost_volume = compute_cost_volume(
         entry.view,
@@ -56,12 +57,17 @@ def run(
     confidence = photometric_confidence(min_cost, params.confidence_falloff)
     confidence *= texture_confidence(patches.variance, params.texture_half_variance)
     confidence[~patches.complete] = 0
+    inverse_depth, variance = measured.inverse_depth.astype(np.float64), measured.variance.astype(np.float64)
+    if stereo is not None:
+        matched = read_stereo(stereo).inverse_depth.astype(np.float64)
+        inverse_depth, variance = merge_measurements(inverse_depth, variance, matched, params.stereo_deviation)
+        confidence[np.isnan(matched)] *= params.unmatched_trust
     solution = optimise_depth(
         cost_volume,
         candidates,
         confidence,
-        1 / measured.inverse_depth.astype(np.float64),
-        measurement_weight(measured.variance.astype(np.float64), params.measurement_weight),
+        1 / inverse_depth,
+        measurement_weight(variance, params.measurement_weight),
         edge_weight(read_edges(edges).astype(np.float64), params.edge_falloff),
         prior=params.prior,
         iterations=params.iterations,

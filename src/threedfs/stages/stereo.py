@@ -1,0 +1,54 @@
+"""Slanted patches of one keyframe by patch-match stereo."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from threedfs.depth.zncc import prepare_grey
+from threedfs.io.depth_maps import StereoMap, read_semidense, write_stereo
+from threedfs.io.frames import read_frames
+from threedfs.io.keyframes import read_keyframe
+from threedfs.job import Job
+from threedfs.params.stereo import StereoParams
+from threedfs.stereo.patch_match import PatchRule, match_patches
+
+
+def run(
+    *,
+    undistorted: Path,
+    keyframes: Path,
+    semidense: Path,
+    stereo: Path,
+    keyframe: str,
+    params: StereoParams,
+    job: Job,
+) -> None:
+    """Read a keyframe, its neighbours and semi-dense depth; write its patches."""
+    frames = read_frames(undistorted)
+    entry = read_keyframe(keyframes, keyframe)
+    neighbours = entry.neighbours[: params.views]
+    found = match_patches(
+        entry.view,
+        prepare_grey(frames.image(keyframe), frames.valid),
+        neighbours,
+        [prepare_grey(frames.image(view.name), frames.valid) for view in neighbours],
+        read_semidense(semidense).inverse_depth.astype(np.float64),
+        near=entry.near,
+        far=entry.far,
+        rule=PatchRule(
+            radius=params.radius,
+            stride=params.stride,
+            likeness=params.likeness,
+            variance_floor=params.variance_floor,
+            least_variance=params.least_variance,
+            best_views=params.best_views,
+        ),
+        levels=params.levels,
+        rounds=params.rounds,
+        seed=job.seed,
+        note=job.progress.note,
+    )
+    arrays = {name: values.astype(np.float32) for name, values in vars(found).items()}
+    write_stereo(stereo, StereoMap(**arrays), job.header)
