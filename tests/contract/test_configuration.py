@@ -10,7 +10,7 @@ import pytest
 import yaml
 
 from threedfs.errors import UserError
-from threedfs.params.configuration import check_configuration, configuration_schema, list_sequences
+from threedfs.params.configuration import check_configuration, configuration_schema, list_sequences, set_aside_missing
 from threedfs.params.document import FILES
 from threedfs.params.schema import STAGES, declared_stages, default_settings, make_params
 
@@ -105,8 +105,22 @@ def test_video_takes_the_place_of_all_sequences(defaults, tmp_path, monkeypatch)
 def test_absent_file_is_named_with_its_key(defaults, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     config = {**defaults, "sequences": {"mug": {"source": str(tmp_path), "truth": {"mesh": "mug.ply"}}}}
-    with pytest.raises(UserError, match=r"sequences\.mug\.truth\.mesh: expected a file or folder, found no mug\.ply"):
-        list_sequences(config, ROOT)
+    config["sequences"]["pot"] = {"source": str(tmp_path), "cameras": None}
+    sequences, missing = set_aside_missing(list_sequences(config, ROOT))
+    assert sequences["mug"]["source"] is None and sequences["mug"]["dataset"] == "sample"
+    assert sequences["pot"]["source"] == str(tmp_path)
+    assert missing == {"mug": f"sequences.mug.truth.mesh: expected a file or folder, found no mug.ply in {tmp_path}."}
+
+
+def test_a_sequence_may_belong_to_a_set_of_its_own(defaults, tmp_path):
+    entries = {"mug": {"source": str(tmp_path), "dataset": "kitchen"}, "pot": {"source": str(tmp_path)}}
+    config = {**defaults, "dataset": "house", "sequences": entries}
+    check_configuration(config, configuration_schema())
+    sequences = list_sequences(config, ROOT)
+    assert (sequences["mug"]["dataset"], sequences["pot"]["dataset"]) == ("kitchen", "house")
+    config["sequences"]["mug"]["dataset"] = "a/b"
+    with pytest.raises(UserError, match=r"'a/b' cannot name .*sequences\.mug\.dataset"):
+        check_configuration(config, configuration_schema())
 
 
 MISFITS = {

@@ -16,15 +16,15 @@ class Failure:
     Attributes
     ----------
     sequence, stage : str
-    method : str
-        Empty if all methods needed the result.
+    item : str
+        The keyframe or method that the job was for; empty if it was for the sequence.
     sentence : str
         Why.
     """
 
     sequence: str
     stage: str
-    method: str
+    item: str
     sentence: str
 
     def __str__(self) -> str:
@@ -64,6 +64,11 @@ class Scores:
         return tuple(dict.fromkeys(name for _, _, name in self._values))
 
     @cached_property
+    def all_datasets(self) -> tuple[str, ...]:
+        """The data sets, each once."""
+        return tuple(dict.fromkeys(self.datasets.values()))
+
+    @cached_property
     def measured(self) -> frozenset[str]:
         """Sequences with figures other than costs."""
         return frozenset(sequence for sequence, method, _ in self._values if method)
@@ -82,8 +87,11 @@ class Scores:
         return next((value for value in found if value is not None), None)
 
     def excuse(self, sequence: str, method: str) -> str:
-        """Say why a sequence lacks a figure of a method: it failed, it is not finished, or nothing (empty)."""
+        """Say why a sequence lacks a figure of a method: it failed, it is not finished, or nothing (empty).
+
+        A job for another method is no reason; one for a keyframe is.
+        """
         for failure in self.failures:
-            if failure.sequence == sequence and (not failure.method or failure.method == method):
+            if failure.sequence == sequence and (failure.item == method or failure.item not in self.methods):
                 return str(failure)
         return "" if sequence in self.measured else "not finished"
