@@ -44,7 +44,8 @@ def read_actions(folder: Path, store: Path) -> list[dict]:
 def _explain(lines: list[str], log: Path) -> str:
     for line in lines:
         if line.startswith(_REFUSED):  # threedfs: STAGE of SEQUENCE ITEM: sentence
-            return line.removeprefix(_REFUSED).partition(": ")[2]
+            label, _, sentence = line.removeprefix(_REFUSED).partition(": ")
+            return sentence.removeprefix(f"{label.partition(' of ')[0]}: ")
     if any(line.startswith("Traceback ") for line in lines):
         return f"{lines[-1]} (see {log})"
     return f"ended without telling why, as when it is killed or memory runs out (see {log})"
