@@ -9,7 +9,7 @@ from collections.abc import Sequence
 
 from threedfs.evaluate.paper_table import PRINTED, PRINTED_MEAN, PRINTED_MEDIAN, SEQUENCES
 from threedfs.evaluate.scores import Scores
-from threedfs.evaluate.sequence_rows import Column, SequenceRows
+from threedfs.evaluate.sequence_rows import INTERVAL_NOTE, Column, SequenceRows
 from threedfs.evaluate.table import Table
 
 
@@ -41,7 +41,8 @@ def pose_tables(scores: Scores, dataset: str) -> list[Table]:
         Column("rotation, median, degrees", "pose_rotation_error_median"),
         Column("rotation, largest", "pose_rotation_error_max"),
     ]
-    return _measured(scores, dataset, columns, f"Poses, {dataset}")
+    note = f"After similarity alignment, so 0 where the reference cameras were given. {INTERVAL_NOTE}"
+    return _measured(scores, dataset, columns, f"Poses, {dataset}", note)
 
 
 def mesh_tables(scores: Scores, dataset: str) -> list[Table]:
@@ -111,9 +112,11 @@ def _by_method(scores: Scores, name: str) -> list[Column]:
     return [Column(method, name, method=method) for method in scores.methods]
 
 
-def _measured(scores: Scores, dataset: str, columns: Sequence[Column], title: str) -> list[Table]:
+def _measured(
+    scores: Scores, dataset: str, columns: Sequence[Column], title: str, note: str = INTERVAL_NOTE
+) -> list[Table]:
     rows = SequenceRows.find(scores, dataset, columns)
-    return [rows.render(title)] if rows.measured else []
+    return [rows.render(title, note=note)] if rows.measured else []
 
 
 def _printed_table(sequences: Sequence[str]) -> list[Table]:
