@@ -10,7 +10,14 @@ import pytest
 import yaml
 
 from threedfs.errors import UserError
-from threedfs.params.configuration import check_configuration, configuration_schema, list_sequences, set_aside_missing
+from threedfs.evaluate.paper_table import SEQUENCES
+from threedfs.params.configuration import (
+    METHODS,
+    check_configuration,
+    configuration_schema,
+    list_sequences,
+    set_aside_missing,
+)
 from threedfs.params.document import FILES
 from threedfs.params.schema import STAGES, declared_stages, default_settings, make_params
 
@@ -72,6 +79,18 @@ def test_every_parameter_says_what_it_means(stage, name):
 @pytest.mark.parametrize("path", sorted((ROOT / "config").glob("*/*.yaml")), ids=lambda path: path.name)
 def test_presets_and_data_sets_are_valid(defaults, path):
     check_configuration(merged(defaults, yaml.safe_load(path.read_text())), configuration_schema())
+
+
+def test_benchmark_holds_every_object_of_the_paper_every_real_sequence_and_every_method():
+    benchmark = yaml.safe_load((ROOT / "config/benchmark.yaml").read_text())
+    real = yaml.safe_load((ROOT / "config/datasets/real.yaml").read_text())
+    sequences = benchmark["sequences"]
+    assert [entry["rendered"] for entry in sequences.values() if entry.get("rendered")] == [*SEQUENCES, *SEQUENCES]
+    assert all(sequences[name] == {"rendered": name} for name in SEQUENCES)
+    for name, entry in real["sequences"].items():
+        assert sequences[name] == {**entry, "dataset": real["dataset"]}
+    assert benchmark["evaluate"] == real["evaluate"] and benchmark["methods"] == [*METHODS]
+    assert set(benchmark["depth_experiment"]["sequences"]) <= set(sequences)
 
 
 def test_paper_preset_differs_from_the_defaults_where_it_speaks(defaults):

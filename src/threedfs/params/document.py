@@ -51,7 +51,8 @@ _INTRODUCTION = """\
     snakemake --cores 2 --configfile my.yaml
 
 What the file names takes the place of the default, everything else stays. `presets/paper.yaml` has the constants of
-the paper; a file of sequences and a preset can be given together: `--configfile config/presets/paper.yaml my.yaml`.
+the paper, `presets/quick.yaml` makes everything small; a file of sequences and a preset can be given together:
+`--configfile my.yaml config/presets/paper.yaml`. `benchmark.yaml` is the whole benchmark.
 One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`.
 
 An unknown key, a wrong type or a value out of range stops the run before it starts, with a sentence.
