@@ -1,14 +1,15 @@
-# make demo   set everything up in .venv and reconstruct the sample; again: go on where a run was stopped or killed
-# make test   set everything up and run all tests
-# make config rewrite config/ from the parameters declared in src/threedfs/params/
-# make lock   rewrite the hashed pins from envs/requirements.in
+# make demo    set everything up in .venv and reconstruct the sample; again: go on where a run was stopped or killed
+# make test    set everything up and run all tests
+# make config  rewrite config/ from the parameters declared in src/threedfs/params/
+# make results copy the figures, tables and plots of the last run into docs/
+# make lock    rewrite the hashed pins from envs/requirements.in
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= 2
 BIN := .venv/bin
 PINS := $(shell cksum < envs/requirements.txt | tr ' ' '-')
 READY := .venv/.ready-$(PINS)
 
-.PHONY: demo test config lock setup
+.PHONY: demo test config results lock setup
 
 demo: setup
 	$(BIN)/snakemake --cores $(CORES)
@@ -21,6 +22,9 @@ test: setup
 
 config: setup
 	$(BIN)/python -m threedfs.params.document
+
+results: setup
+	$(BIN)/python -m threedfs.run_end.publish
 
 lock: setup
 	$(BIN)/python -m venv .venv/lock

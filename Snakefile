@@ -9,6 +9,7 @@ configfile: Path(workflow.basedir) / "config" / "config.yaml"
 
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/run.smk"
 include: "workflow/rules/frames.smk"
 include: "workflow/rules/poses.smk"
 include: "workflow/rules/keyframes.smk"
@@ -33,15 +34,13 @@ rule all:
         "results/metrics.csv",
 
 
-onsuccess:
-    from threedfs.run_end import summarise_run
+onstart:
+    refuse_missing()
 
-    sys.stderr.write(
-        summarise_run(Path("results"), Path(config["store"]), since=STARTED)
-    )
+
+onsuccess:
+    finish()
 
 
 onerror:
-    from threedfs.run_end import find_failures
-
-    sys.stderr.write(find_failures(Path("results"), since=STARTED))
+    finish([file for job in workflow.dag.needrun_jobs() for file in job.output])

@@ -10,7 +10,14 @@ import pytest
 import yaml
 
 from threedfs.errors import UserError
-from threedfs.params.configuration import check_configuration, configuration_schema, list_sequences
+from threedfs.evaluate.paper_table import SEQUENCES
+from threedfs.params.configuration import (
+    METHODS,
+    check_configuration,
+    configuration_schema,
+    list_sequences,
+    set_aside_missing,
+)
 from threedfs.params.document import FILES
 from threedfs.params.schema import STAGES, declared_stages, default_settings, make_params
 
@@ -74,6 +81,18 @@ def test_presets_and_data_sets_are_valid(defaults, path):
     check_configuration(merged(defaults, yaml.safe_load(path.read_text())), configuration_schema())
 
 
+def test_benchmark_holds_every_object_of_the_paper_every_real_sequence_and_every_method():
+    benchmark = yaml.safe_load((ROOT / "config/benchmark.yaml").read_text())
+    real = yaml.safe_load((ROOT / "config/datasets/real.yaml").read_text())
+    sequences = benchmark["sequences"]
+    assert [entry["rendered"] for entry in sequences.values() if entry.get("rendered")] == [*SEQUENCES, *SEQUENCES]
+    assert all(sequences[name] == {"rendered": name} for name in SEQUENCES)
+    for name, entry in real["sequences"].items():
+        assert sequences[name] == {**entry, "dataset": real["dataset"]}
+    assert benchmark["evaluate"] == real["evaluate"] and benchmark["methods"] == [*METHODS]
+    assert set(benchmark["depth_experiment"]["sequences"]) <= set(sequences)
+
+
 def test_paper_preset_differs_from_the_defaults_where_it_speaks(defaults):
     paper = yaml.safe_load((ROOT / "config/presets/paper.yaml").read_text())
     assert any(paper[stage][name] != defaults[stage][name] for stage in paper for name in paper[stage])
@@ -105,8 +124,22 @@ def test_video_takes_the_place_of_all_sequences(defaults, tmp_path, monkeypatch)
 def test_absent_file_is_named_with_its_key(defaults, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     config = {**defaults, "sequences": {"mug": {"source": str(tmp_path), "truth": {"mesh": "mug.ply"}}}}
-    with pytest.raises(UserError, match=r"sequences\.mug\.truth\.mesh: expected a file or folder, found no mug\.ply"):
-        list_sequences(config, ROOT)
+    config["sequences"]["pot"] = {"source": str(tmp_path), "cameras": None}
+    sequences, missing = set_aside_missing(list_sequences(config, ROOT))
+    assert sequences["mug"]["source"] is None and sequences["mug"]["dataset"] == "sample"
+    assert sequences["pot"]["source"] == str(tmp_path)
+    assert missing == {"mug": f"sequences.mug.truth.mesh: expected a file or folder, found no mug.ply in {tmp_path}."}
+
+
+def test_a_sequence_may_belong_to_a_set_of_its_own(defaults, tmp_path):
+    entries = {"mug": {"source": str(tmp_path), "dataset": "kitchen"}, "pot": {"source": str(tmp_path)}}
+    config = {**defaults, "dataset": "house", "sequences": entries}
+    check_configuration(config, configuration_schema())
+    sequences = list_sequences(config, ROOT)
+    assert (sequences["mug"]["dataset"], sequences["pot"]["dataset"]) == ("kitchen", "house")
+    config["sequences"]["mug"]["dataset"] = "a/b"
+    with pytest.raises(UserError, match=r"'a/b' cannot name .*sequences\.mug\.dataset"):
+        check_configuration(config, configuration_schema())
 
 
 MISFITS = {

@@ -1,7 +1,8 @@
-"""Exact and rejection: intersection over union of shapes whose areas are known."""
+"""Exact, oracle (scikit-learn) and rejection: intersection over union of shapes whose areas are known."""
 
 import numpy as np
 import pytest
+from sklearn.metrics import jaccard_score
 
 from threedfs.errors import UserError
 from threedfs.evaluate.masks import check_mask_size, intersection_over_union
@@ -36,3 +37,11 @@ def test_refuses_a_mask_of_another_size():
         intersection_over_union(square(0), square(0).T, "masks/000010.png")
     with pytest.raises(UserError, match="like the source frames"):
         check_mask_size(square(0), (60, 80), "a.png")
+
+
+@pytest.mark.parametrize("share", [0.01, 0.3, 0.9])
+def test_against_scikit_learn(share):
+    generator = np.random.default_rng(4)
+    mask, truth = generator.random((2, 30, 40)) < share
+    expected = jaccard_score(truth.ravel(), mask.ravel())
+    assert intersection_over_union(mask, truth) == pytest.approx(expected, rel=1e-12)

@@ -1,26 +1,24 @@
-# Configuration, the keyframe list and the parameters that all rules have.
+# Configuration, sequences, the keyframe list and the parameters that all rules have.
 import json
 import sys
-import time
 
 from threedfs.errors import UserError
 from threedfs.params.configuration import (
     check_configuration,
     configuration_schema,
     list_sequences,
+    set_aside_missing,
 )
 from threedfs.store.code import digest_code
 from threedfs.store.digests import InputDigests
-from threedfs.store.run_lock import take_over
 
 try:
     check_configuration(config, configuration_schema())
-    SEQUENCES = list_sequences(config, Path(workflow.basedir))
+    named = list_sequences(config, Path(workflow.basedir))
+    SEQUENCES, MISSING = set_aside_missing(named)
 except UserError as fault:
     sys.exit(f"threedfs: {fault}")
 
-RUN_LOCK = take_over(Path(".snakemake")) if workflow.is_main_process else None
-STARTED = time.time()
 STORE_DIGESTS = InputDigests(Path(config["store"]) / "digests")
 
 

@@ -30,7 +30,7 @@ rule evaluate:
         seed=config["seed"],
         folders=fingerprint_of("truth_masks", "truth_cameras", "truth_depth"),
         labels=lambda wildcards: {
-            "dataset": config["dataset"],
+            "dataset": SEQUENCES[wildcards.sequence]["dataset"],
             "sequence": wildcards.sequence,
         },
     message:

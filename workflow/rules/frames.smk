@@ -46,6 +46,7 @@ rule frames:
         settings=settings_of("frames"),
         seed=config["seed"],
         folders=fingerprint_of("source", "truth_masks"),
+        refusal=lambda wildcards: MISSING.get(wildcards.sequence, ""),
     message:
         "Decode the frames of {wildcards.sequence}."
     script:

@@ -1,8 +1,11 @@
-"""The table printed at the end of a run."""
+"""The tables printed at the end of a run."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+
+from threedfs.evaluate.scores import Scores
+from threedfs.evaluate.sequence_rows import FOOTERS, pick
 
 _COLUMNS = (
     ("IoU mean", "iou_mean", ".3f"),
@@ -39,6 +42,31 @@ def render_summary(tables: Mapping[str, Mapping[str, float]]) -> str:
     rows = [["", *(title for title, _, _ in columns)]]
     for label, figures in tables.items():
         rows.append([label, *(format(figures[name], form) if name in figures else "-" for _, name, form in columns)])
+    return _align(rows)
+
+
+def render_overlap(scores: Scores) -> str:
+    """Return one line for each data set and method: mean, its confidence interval, and median of the IoU.
+
+    Examples
+    --------
+    >>> from threedfs.io.metrics import Metric
+    >>> rows = (Metric("iou_mean", 0.9, "1", "toys", "mug", "fused_sdf"),)
+    >>> print(render_overlap(Scores(rows, {"mug": "toys", "can": "toys"}, ("fused_sdf",))))
+                    IoU mean  median  sequences
+    toys fused_sdf     0.900   0.900     1 of 2
+    """
+    rows = [["", "IoU mean", "median", "sequences"]]
+    for dataset in scores.all_datasets:
+        sequences = scores.sequences(dataset)
+        for method in scores.methods:
+            values = pick(scores.value(sequence, method, "iou_mean") for sequence in sequences)
+            ends = (FOOTERS[footer](values, ".3f", scores.seed) for footer in ("mean", "median"))
+            rows.append([f"{dataset} {method}", *ends, f"{len(values)} of {len(sequences)}"])
+    return _align(rows)
+
+
+def _align(rows: Sequence[Sequence[str]]) -> str:
     widths = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
     return "\n".join(
         "  ".join(

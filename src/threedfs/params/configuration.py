@@ -15,7 +15,11 @@ from threedfs.params.schema import declared_stages, make_params, stage_schema
 
 METHODS = ("fused_sdf",)
 SEQUENCE_NAME = r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$"
+SEQUENCE_FILES = ("source", "cameras", "calibration", "truth_masks", "truth_cameras", "truth_mesh", "truth_depth")
+"""What a sequence's entry names: files and folders that must be there."""
+
 _PATH = {"type": ["string", "null"]}
+_DATASET = {"type": "string", "pattern": SEQUENCE_NAME}
 
 
 def configuration_schema() -> dict[str, Any]:
@@ -27,13 +31,14 @@ def configuration_schema() -> dict[str, Any]:
         "required": ["source"],
         "properties": {
             "source": {"type": "string"},
+            "dataset": _DATASET,
             "cameras": _PATH,
             "calibration": _PATH,
             "truth": {"type": ["object", "null"], "additionalProperties": False, "properties": truth},
         },
     }
     general = {
-        "dataset": {"type": "string", "pattern": SEQUENCE_NAME},
+        "dataset": _DATASET,
         "video": _PATH,
         "sequences": {
             "type": ["object", "null"],
@@ -78,12 +83,12 @@ def list_sequences(config: Mapping[str, Any], home: Path) -> dict[str, dict[str,
     Returns
     -------
     dict of str to dict
-        source, cameras, calibration, truth_masks, truth_cameras, truth_mesh, truth_depth: paths or None.
+        `SEQUENCE_FILES`: paths or None; dataset.
 
     Raises
     ------
     UserError
-        If a name cannot name a folder, or a path leads nowhere.
+        If a name cannot name a folder, or the one video is not there.
     """
     given = dict(config["sequences"] or {})
     if config["video"]:
@@ -94,12 +99,34 @@ def list_sequences(config: Mapping[str, Any], home: Path) -> dict[str, dict[str,
             raise UserError(_explain_name(name, f"the file {config['video']}; rename it, or list it under sequences"))
         given = {name: {"source": config["video"]}}
     sequences = {name: _flatten(entry) for name, entry in given.items()} or {"sample": _sample(home)}
+    return {name: {"dataset": config["dataset"], **entry} for name, entry in sequences.items()}
+
+
+def set_aside_missing(
+    sequences: Mapping[str, Mapping[str, str | None]],
+) -> tuple[dict[str, Mapping[str, str | None]], dict[str, str]]:
+    """Find the sequences of which a file or folder is missing.
+
+    Parameters
+    ----------
+    sequences : mapping
+        From `list_sequences`.
+
+    Returns
+    -------
+    sequences : dict
+        The same; where one path leads nowhere, all paths are None.
+    missing : dict of str to str
+        For each of those a sentence about the first such path.
+    """
+    missing = {}
     for name, entry in sequences.items():
-        for key, path in entry.items():
-            if path is not None and not os.path.exists(path):
+        for key in SEQUENCE_FILES:
+            if entry[key] is not None and not os.path.exists(entry[key]):
                 where = f"sequences.{name}.{key.replace('truth_', 'truth.')}"
-                raise UserError(f"{where}: expected a file or folder, found no {path} in {os.getcwd()}.")
-    return sequences
+                missing.setdefault(name, f"{where}: expected a file or folder, found no {entry[key]} in {os.getcwd()}.")
+    emptied = {name: {**sequences[name], **dict.fromkeys(SEQUENCE_FILES)} for name in missing}
+    return {**sequences, **emptied}, missing
 
 
 def _sample(home: Path) -> dict[str, str | None]:
@@ -116,9 +143,9 @@ def _sample(home: Path) -> dict[str, str | None]:
 
 
 def _flatten(entry: Mapping[str, Any]) -> dict[str, str | None]:
-    truth = entry.get("truth") or {}
-    given = {key: entry.get(key) for key in ("source", "cameras", "calibration")}
-    return given | {f"truth_{key}": truth.get(key) for key in ("masks", "cameras", "mesh", "depth")}
+    truth = {f"truth_{key}": path for key, path in (entry.get("truth") or {}).items()}
+    own = {"dataset": entry["dataset"]} if "dataset" in entry else {}
+    return {key: {**entry, **truth}.get(key) for key in SEQUENCE_FILES} | own
 
 
 def _explain(fault: jsonschema.ValidationError) -> str:

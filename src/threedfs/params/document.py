@@ -27,6 +27,7 @@ video: null
 # Sequences by name; without any, the sample that ships with the project. Relative paths count from where you run.
 #   mug:
 #     source: videos/mug.mp4        # a video or a folder of photos
+#     dataset: kitchen              # in place of the one above
 #     cameras: null                 # given cameras, instead of structure from motion
 #     calibration: null             # photos or a video of a checkerboard
 #     truth: {masks: null, cameras: null, mesh: null, depth: null}
@@ -50,7 +51,8 @@ _INTRODUCTION = """\
     snakemake --cores 2 --configfile my.yaml
 
 What the file names takes the place of the default, everything else stays. `presets/paper.yaml` has the constants of
-the paper; a file of sequences and a preset can be given together: `--configfile config/presets/paper.yaml my.yaml`.
+the paper, `presets/quick.yaml` makes everything small; a file of sequences and a preset can be given together:
+`--configfile my.yaml config/presets/paper.yaml`. `benchmark.yaml` is the whole benchmark.
 One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`.
 
 An unknown key, a wrong type or a value out of range stops the run before it starts, with a sentence.
@@ -61,15 +63,20 @@ An unknown key, a wrong type or a value out of range stops the run before it sta
 Paths count from the folder in which `snakemake` runs. A sequence's name is a folder's name: letters, digits, dots,
 dashes, underscores.
 
+A missing file or folder stops the run before it starts. With `--keep-going` its sequence fails at once and the others
+are finished, as with whatever else may go wrong in a sequence; the tables name it with the reason, and the exit status
+is not 0.
+
 ## Parameters
 
 Symbol and equation are those of the paper, equations counted in the order of its source.
 """
 
 _KEYS = {
-    "dataset": "name of the set, a column of `results/metrics.csv`",
+    "dataset": "name of the set, a column of `results/metrics.csv`; tables and plots are made for each set",
     "video": "one video or folder of photos; the sequence gets the file's name",
     "sequences.<name>.source": "a video (mp4, mov) or a folder of photos",
+    "sequences.<name>.dataset": "its own set, in place of `dataset`: one file may hold several sets",
     "sequences.<name>.cameras": "given cameras: a COLMAP model folder, `transforms.json`, `cameras.json` with "
     "`cam_to_world`, or a folder of CONTOUR projection matrices; null: structure from motion",
     "sequences.<name>.calibration": "photos or a video of a checkerboard; null: the camera calibrates itself",

@@ -46,6 +46,7 @@ def run_job(
     log: Path,
     threads: int,
     seed: int,
+    refusal: str = "",
 ) -> None:
     """Perform one job and exit with status 1 if it fails.
 
@@ -61,6 +62,8 @@ def run_job(
     labels : mapping of str to str
         Names that a stage writes into its output, which therefore count.
     log : Path
+    refusal : str
+        Why the job cannot be done, if that is known before.
     """
     identity = {name: value for name, value in wildcards.items() if name != "sequence"}
     label = " ".join([wildcards.get("sequence", "all sequences"), *identity.values()])
@@ -68,6 +71,8 @@ def run_job(
     with open(log, "w", encoding="utf-8") as file:
         progress = Progress(f"{stage} of {label}", Tee(file, sys.stderr))
         try:
+            if refusal:
+                raise UserError(refusal)
             outcome = perform(
                 stage,
                 inputs,

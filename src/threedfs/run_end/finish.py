@@ -1,0 +1,160 @@
+"""What a run leaves and says when it ends, well or not: tables, plots, a summary, and why jobs failed."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Collection, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from threedfs.evaluate.costs import cost_figures
+from threedfs.evaluate.experiment_tables import experiment_tables, group_experiments
+from threedfs.evaluate.plots import plot_depth_experiment, plot_overlap
+from threedfs.evaluate.scores import Scores
+from threedfs.evaluate.summary import render_overlap, render_summary
+from threedfs.evaluate.table import Table, render_markdown
+from threedfs.evaluate.tables import (
+    cost_tables,
+    depth_tables,
+    mesh_tables,
+    overlap_tables,
+    pose_tables,
+    unseen_tables,
+)
+from threedfs.io.atomic import atomic
+from threedfs.io.metrics import Metric, read_metrics, write_metrics
+from threedfs.params.schema import STAGES
+from threedfs.run_end.logs import find_failures, read_actions
+
+TABLES = {
+    "iou": overlap_tables,
+    "iou_unseen": unseen_tables,
+    "depth_experiment": experiment_tables,
+    "poses": pose_tables,
+    "meshes": mesh_tables,
+    "depth": depth_tables,
+}
+"""Files of tables, by name, in the order in which they are read."""
+
+
+@dataclass(frozen=True)
+class Run:
+    """What a run was to do.
+
+    Attributes
+    ----------
+    results, store : Path
+    started : float
+        Seconds since the epoch.
+    datasets : mapping of str to str
+        The data set of each sequence.
+    methods : tuple of str
+    tables : tuple of Path
+        The tables of metrics that rule collect puts together.
+    seed : int
+        Of the confidence intervals.
+    """
+
+    results: Path
+    store: Path
+    started: float
+    datasets: Mapping[str, str]
+    methods: tuple[str, ...]
+    tables: tuple[Path, ...]
+    seed: int
+
+
+def finish_run(run: Run, unfinished: Collection[str] = ()) -> str:
+    """Write the tables and plots of the sequences that have their figures; return what the run says at its end.
+
+    Below `results`: `tables/*.md`, `tables/metrics.csv` (the figures in them), `plots/*.svg`; and what differs from run
+    to run, `benchmarks/costs.csv` and `costs.md`. Costs are those of the work when it was done, also for what was then
+    taken from the store. If a job failed, the tables name it, and `results/metrics.csv`, which does not hold all that
+    the run was to measure, is taken away: the next run makes it.
+
+    Parameters
+    ----------
+    run : Run
+    unfinished : collection of str
+        Outputs of jobs that the run should have done and did not. Where they are there, they are out of date.
+
+    Returns
+    -------
+    str
+        Only the failures, if the run was not to collect figures.
+    """
+    failures = find_failures(run.results, run.started)
+    collected = run.results / "metrics.csv"
+    refused = "".join(
+        f"threedfs: {failure.stage} of {' '.join(filter(None, (failure.sequence, failure.item)))}: {failure.sentence}\n"
+        for failure in failures
+    )
+    if str(collected) in unfinished:
+        collected.unlink(missing_ok=True)
+    elif not collected.is_file() or collected.stat().st_mtime < run.started:
+        return refused
+    current = [path for path in run.tables if path.is_file() and str(path) not in unfinished]
+    metrics = [metric for path in current for metric in read_metrics(path)]
+    costs = [
+        Metric(cost.name, cost.value, cost.unit, dataset, sequence)
+        for sequence, dataset in run.datasets.items()
+        for cost in cost_figures(read_actions(run.results / sequence, run.store))
+    ]
+    write_metrics(run.results / "benchmarks" / "costs.csv", costs)
+    write_metrics(run.results / "tables" / "metrics.csv", metrics)
+    scores = Scores((*metrics, *costs), run.datasets, run.methods, tuple(failures), run.seed)
+    _write_all(run.results / "tables", ".md", _lay_out(scores, TABLES))
+    by_stage = {"costs": lambda scores, dataset: cost_tables(scores, dataset, STAGES)}
+    _write_all(run.results / "benchmarks", ".md", _lay_out(scores, by_stage))
+    _write_all(run.results / "plots", ".svg", _draw_plots(scores))
+    return f"\n{_summarise(scores)}\n\nTables and plots: {run.results}/tables, {run.results}/plots\n{refused}"
+
+
+def _lay_out(scores: Scores, makers: Mapping[str, Callable[[Scores, str], list[Table]]]) -> dict[str, str]:
+    texts = {}
+    for name, make in makers.items():
+        tables = [table for dataset in scores.all_datasets for table in make(scores, dataset)]
+        if tables:
+            texts[name] = "\n".join(render_markdown(table) for table in tables)
+    return texts
+
+
+def _draw_plots(scores: Scores) -> dict[str, str]:
+    plots = {}
+    for dataset in scores.all_datasets:
+        plots[f"iou_{dataset}"] = plot_overlap(scores, dataset)
+        for count in group_experiments(scores):
+            plots[f"depth_{dataset}_{count}"] = plot_depth_experiment(scores, dataset, count)
+    return {name: plot for name, plot in plots.items() if plot}
+
+
+def _write_all(folder: Path, suffix: str, texts: Mapping[str, str]) -> None:
+    """Write files of a suffix, and remove those of earlier runs that there is nothing for now."""
+    for name, text in texts.items():
+        with atomic(folder / f"{name}{suffix}") as temporary:
+            temporary.write_text(text, encoding="utf-8")
+    for path in folder.glob(f"*{suffix}"):
+        if path.stem not in texts:
+            path.unlink()
+
+
+def _summarise(scores: Scores) -> str:
+    lines: dict[str, dict[str, float]] = defaultdict(dict)
+    for row in scores.metrics:
+        if not row.keyframe and row.method in scores.methods:
+            lines[f"{row.sequence} {row.method}"][row.name] = row.value
+            lines[f"{row.sequence} {row.method}"]["seconds"] = scores.value(row.sequence, "", "seconds") or 0.0
+    parts = [render_summary(lines)] if lines else []
+    parts += [render_overlap(scores)] if len(scores.datasets) > 1 else []
+    return "\n\n".join([*parts, _sum_up_costs(scores)])
+
+
+def _sum_up_costs(scores: Scores) -> str:
+    totals = {
+        kind: [row.value for row in scores.metrics if not row.method and row.name.startswith(kind)]
+        for kind in ("seconds_", "peak_memory_", "bytes_")
+    }
+    return (
+        f"Cost when the work was done: {sum(totals['seconds_']):.0f} s of all cores together, at most "
+        f"{max(totals['peak_memory_'], default=0):.0f} MB in a job, {sum(totals['bytes_']) / 1e6:.0f} MB written."
+    )

@@ -1,0 +1,59 @@
+"""What the logs of a run tell: which jobs failed and why, and what the others cost."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from threedfs.evaluate.scores import Failure
+
+_DONE = "action "
+_REFUSED = "threedfs: "
+
+
+def find_failures(results: Path, since: float) -> list[Failure]:
+    """Find the jobs that began after a time and did not end well, in the order of their logs' names.
+
+    A job that ended well has told, in the last line of its log, the action that it did.
+
+    Parameters
+    ----------
+    results : Path
+        Holds the logs: `SEQUENCE/logs/STAGE.log`, or `SEQUENCE/logs/STAGE/ITEM.log` for one keyframe or method.
+    since : float
+        Seconds since the epoch.
+    """
+    failures = []
+    for log in _find_logs(results):
+        lines = _read_lines(log)
+        if log.stat().st_mtime >= since and not (lines and lines[-1].startswith(_DONE)):
+            sequence, _, place = log.relative_to(results).with_suffix("").as_posix().partition("logs/")
+            stage, _, item = place.partition("/")
+            failures.append(Failure(sequence.rstrip("/"), stage, item, _explain(lines, log)))
+    return failures
+
+
+def read_actions(folder: Path, store: Path) -> list[dict]:
+    """Read the records of the actions that the jobs of a sequence did, from the ends of its logs."""
+    ends = {lines[-1] for lines in map(_read_lines, _find_logs(folder)) if lines}
+    keys = sorted(end.removeprefix(_DONE) for end in ends if end.startswith(_DONE))
+    records = (store / "actions" / key[:2] / f"{key}.json" for key in keys)
+    return [json.loads(record.read_text()) for record in records if record.is_file()]
+
+
+def _explain(lines: list[str], log: Path) -> str:
+    for line in lines:
+        if line.startswith(_REFUSED):  # threedfs: STAGE of SEQUENCE ITEM: sentence
+            label, _, sentence = line.removeprefix(_REFUSED).partition(": ")
+            return sentence.removeprefix(f"{label.partition(' of ')[0]}: ")
+    if any(line.startswith("Traceback ") for line in lines):
+        return f"{lines[-1]} (see {log})"
+    return f"ended without telling why, as when it is killed or memory runs out (see {log})"
+
+
+def _read_lines(log: Path) -> list[str]:
+    return log.read_text(encoding="utf-8", errors="replace").rstrip().splitlines()
+
+
+def _find_logs(folder: Path) -> list[Path]:
+    return sorted(path for path in folder.rglob("*.log") if "logs" in path.relative_to(folder).parts)

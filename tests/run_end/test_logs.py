@@ -1,0 +1,67 @@
+"""Exact: what logs tell of jobs that failed and of those that did not."""
+
+import json
+import os
+
+import pytest
+
+from threedfs.evaluate.scores import Failure
+from threedfs.run_end.logs import find_failures, read_actions
+
+LOGS = {
+    "mug/logs/poses.log": "poses of mug: at work\nthreedfs: poses of mug: poses: expected motion: got none.\n",
+    "mug/logs/depth/000010.log": "depth of mug 000010: at work\n",
+    "can/logs/object/fused_sdf.log": "Traceback (most recent call last):\n  File\nIndexError: 3\n",
+    "can/logs/frames.log": "frames of can: done in 1.0 s\naction abcd\n",
+    "logs/collect.log": "",
+}
+SENTENCES = [
+    ("can", "object", "fused_sdf", "IndexError: 3 (see RESULTS/can/logs/object/fused_sdf.log)"),
+    (
+        "",
+        "collect",
+        "",
+        "ended without telling why, as when it is killed or memory runs out (see RESULTS/logs/collect.log)",
+    ),
+    (
+        "mug",
+        "depth",
+        "000010",
+        "ended without telling why, as when it is killed or memory runs out (see RESULTS/mug/logs/depth/000010.log)",
+    ),
+    ("mug", "poses", "", "expected motion: got none."),
+]
+
+
+@pytest.fixture
+def results(tmp_path):
+    """Logs of a run that began at time 1000."""
+    for name, text in LOGS.items():
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text)
+        os.utime(path, (2000, 2000))
+    return tmp_path
+
+
+def test_failed_jobs_tell_why_as_far_as_they_know(results):
+    found = [
+        Failure(failure.sequence, failure.stage, failure.item, failure.sentence.replace(str(results), "RESULTS"))
+        for failure in find_failures(results, 1000)
+    ]
+    assert sorted(found, key=lambda failure: failure.stage) == sorted(
+        (Failure(*values) for values in SENTENCES), key=lambda failure: failure.stage
+    )
+
+
+def test_logs_of_earlier_runs_are_left_alone(results):
+    os.utime(results / "mug/logs/poses.log", (500, 500))
+    assert not any(failure.stage == "poses" for failure in find_failures(results, 1000))
+
+
+def test_actions_are_those_that_the_logs_end_with(results, tmp_path):
+    record = tmp_path / "store/actions/ab/abcd.json"
+    record.parent.mkdir(parents=True)
+    record.write_text(json.dumps({"stage": "frames"}))
+    assert read_actions(results / "can", tmp_path / "store") == [{"stage": "frames"}]
+    assert read_actions(results / "mug", tmp_path / "store") == []

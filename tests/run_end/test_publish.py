@@ -1,0 +1,60 @@
+"""Exact and rejection: what is published, and what is left alone."""
+
+import pytest
+
+from threedfs.errors import UserError
+from threedfs.io.metrics import Metric, read_metrics, write_metrics
+from threedfs.run_end.publish import BEGIN, END, publish
+
+
+@pytest.fixture
+def results(tmp_path):
+    """What a run leaves behind."""
+    folder = tmp_path / "results"
+    write_metrics(folder / "tables/metrics.csv", [Metric("iou_mean", 0.9, "1", "toys", "mug", "fused_sdf")])
+    write_metrics(folder / "benchmarks/costs.csv", [Metric("seconds", 3.0, "s", "toys", "mug")])
+    (folder / "tables/iou.md").write_text(f"### IoU\n\nfailed: found no a.mp4 in {tmp_path}.\n")
+    (folder / "benchmarks/costs.md").write_text("### Seconds\n")
+    (folder / "plots").mkdir()
+    (folder / "plots/iou_toys.svg").write_text("<svg/>")
+    return folder
+
+
+def test_tables_plots_and_figures_are_published(results, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    docs = tmp_path / "docs"
+    publish(results, docs)
+    assert [row.name for row in read_metrics(docs / "results.csv")] == ["iou_mean", "seconds"]
+    text = (docs / "results.md").read_text()
+    assert text.index("## Foreground IoU") < text.index("](plots/iou_toys.svg)") < text.index("### IoU")
+    assert text.index("### IoU") < text.index("## Cost")
+    assert "found no a.mp4." in text and str(tmp_path) not in text
+    assert (docs / "plots/iou_toys.svg").read_text() == "<svg/>"
+
+
+def test_own_words_are_kept_and_the_rest_is_replaced(results, tmp_path):
+    docs = tmp_path / "docs"
+    publish(results, docs)
+    page = docs / "results.md"
+    page.write_text(f"Mine.\n\n{page.read_text()}\nMine too.\n")
+    (results / "tables/iou.md").write_text("### Newer\n")
+    (results / "plots/iou_toys.svg").unlink()
+    publish(results, docs)
+    text = page.read_text()
+    assert text.startswith("Mine.\n\n# Results") and text.endswith("Mine too.\n")
+    assert "### Newer" in text and "### IoU" not in text
+    assert text.count(BEGIN) == text.count(END) == 1
+    assert not list((docs / "plots").iterdir())
+    publish(results, docs)
+    assert page.read_text() == text
+
+
+def test_refuses_a_page_without_marks_and_a_run_without_tables(results, tmp_path):
+    docs = tmp_path / "docs"
+    docs.mkdir()
+    (docs / "results.md").write_text("All mine.")
+    with pytest.raises(UserError, match=r"results\.md: expected the lines"):
+        publish(results, docs)
+    assert not (docs / "results.csv").exists()
+    with pytest.raises(UserError, match="expected the figures of a run"):
+        publish(tmp_path / "nothing", docs)

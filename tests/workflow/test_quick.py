@@ -1,0 +1,85 @@
+"""The benchmark in small, with the real stages: one sound sequence, one with a static camera, one without its file."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import cv2
+import numpy as np
+import pytest
+
+from threedfs.io.metrics import read_metrics
+from threedfs.synthetic.video import write_video
+
+ROOT = Path(__file__).resolve().parents[2]
+SAMPLE = ROOT / "resources" / "sample"
+SEQUENCES = """\
+dataset: quick
+sequences:
+  gnome:
+    source: {sample}/video.mp4
+    cameras: {sample}/cameras.json
+    truth: {{masks: masks, cameras: {sample}/cameras.json, mesh: {sample}/mesh.ply}}
+  static: {{source: static.mp4}}
+  lost: {{source: lost.mp4}}
+"""
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    """Return the folder of the run, its exit status, and what it printed."""
+    folder = tmp_path_factory.mktemp("quick")
+    for name in ("000000", "000060", "000120"):
+        (folder / "masks").mkdir(exist_ok=True)
+        shutil.copy(SAMPLE / "masks" / f"{name}.png", folder / "masks")
+    _write_static_video(folder / "static.mp4")
+    (folder / "three.yaml").write_text(SEQUENCES.format(sample=SAMPLE))
+    # kernels of the same sources are compiled once, not in every run of the tests
+    (folder / "results/.store").mkdir(parents=True)
+    (folder / "results/.store/kernels").symlink_to(os.environ["NUMBA_CACHE_DIR"])
+    command = [Path(sys.executable).parent / "snakemake", "--snakefile", ROOT / "Snakefile", "--cores", "2"]
+    files = [folder / "three.yaml", ROOT / "config/presets/quick.yaml"]
+    environment = {**os.environ, "PYTHONPATH": f"{ROOT / 'src'}:{os.environ.get('PYTHONPATH', '')}"}
+    done = subprocess.run(
+        [*command, "--keep-going", "--configfile", *files],
+        cwd=folder,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        check=False,
+    )
+    return folder / "results", done.returncode, done.stdout
+
+
+def _write_static_video(path: Path) -> None:
+    """Write twelve times the sample's first frame, each with its own noise."""
+    done, image = cv2.VideoCapture(str(SAMPLE / "video.mp4")).read()
+    assert done
+    image, generator = image[::2, ::2, ::-1].astype(float), np.random.default_rng(0)
+    noisy = (np.clip(image + generator.normal(0, 2, image.shape), 0, 255).astype(np.uint8) for _ in range(12))
+    write_video(path, noisy, 30, 23)
+
+
+def test_the_sound_sequence_is_measured(run):
+    results, _, output = run
+    found = {row.name: row.value for row in read_metrics(results / "tables/metrics.csv") if not row.keyframe}
+    assert found["iou_mean"] > 0.6, output
+    assert found["mesh_closed"] == 1 and found["mesh_chamfer"] < 5
+    assert found["pose_centre_error_max"] < 1e-6  # the cameras are given
+    assert {path.name for path in (results / "tables").glob("*.md")} == {"iou.md", "poses.md", "meshes.md", "depth.md"}
+    assert (results / "plots/iou_quick.svg").is_file()
+    assert "| gnome    |" in (results / "benchmarks/costs.md").read_text()
+
+
+def test_the_others_are_named_with_their_reason(run):
+    results, status, output = run
+    assert status != 0
+    lines = {line.split(" |")[0].lstrip("| "): line for line in (results / "tables/iou.md").read_text().splitlines()}
+    assert "failed: poses: expected the image to move by at least 3 pixels" in lines["static  "]
+    assert "failed: frames: sequences.lost.source: expected a file or folder, found no lost.mp4" in lines["lost    "]
+    assert "1 of 3" in output and "the camera is static" in output.partition("Tables and plots")[2]
