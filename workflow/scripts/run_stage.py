@@ -22,4 +22,5 @@ run_job(
     log=Path(snakemake.log[0]),
     threads=snakemake.threads,
     seed=snakemake.params.seed,
+    modules=snakemake.params.get("modules", []),
 )
