@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 from numba import njit
 
-from threedfs.geometry.projection import pixel_grid
 from threedfs.types import Camera
 
 # A step along the way is at most this long, px; a longer way is covered by at most so many steps.
@@ -28,16 +27,26 @@ def image_motion(
     start, end, middle : (4, 4) float64
         `cam_from_world`.
     """
-    u, v = pixel_grid(camera)
-    rays = np.stack([(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, np.ones_like(u)], axis=-1)
-    ends = []
-    for pose in (start, end):
-        moved = pose @ np.linalg.inv(middle)
-        # Not a matrix product: its threads would fight with those of the other frames' processes.
-        point = np.einsum("hwc,dc->hwd", rays, moved[:3, :3]) + moved[:3, 3] / depth[..., None]
-        forward = np.maximum(point[..., 2:], 1e-3)
-        ends.append(point[..., :2] / forward * (camera.fx, camera.fy))
-    return ends[1] - ends[0]
+    # From homogeneous (u, v, 1, 1 / depth) of the middle to homogeneous pixels of the ends.
+    to_rays = np.eye(4)
+    to_rays[:3, :3] = np.linalg.inv(camera.px_from_cam)
+    maps = [camera.px_from_cam @ (pose @ np.linalg.inv(middle))[:3] @ to_rays for pose in (start, end)]
+    return _motion(depth, maps[0], maps[1])
+
+
+@njit(cache=True)
+def _motion(depth: np.ndarray, to_start: np.ndarray, to_end: np.ndarray) -> np.ndarray:
+    height, width = depth.shape
+    out, ends = np.empty((height, width, 2)), np.empty(4)
+    for v in range(height):
+        for u in range(width):
+            near = 1 / depth[v, u]
+            for k, to in enumerate((to_start, to_end)):
+                forward = max(to[2, 0] * u + to[2, 1] * v + to[2, 2] + to[2, 3] * near, 1e-3)
+                for d in range(2):
+                    ends[2 * k + d] = (to[d, 0] * u + to[d, 1] * v + to[d, 2] + to[d, 3] * near) / forward
+            out[v, u, 0], out[v, u, 1] = ends[2] - ends[0], ends[3] - ends[1]
+    return out
 
 
 def smear(image: np.ndarray, depth: np.ndarray, motion: np.ndarray) -> np.ndarray:

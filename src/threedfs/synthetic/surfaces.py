@@ -38,6 +38,7 @@ def stony(ground: Colour, veins: Colour, grains: Colour, size: float, seed: int 
         moved = points + np.column_stack([bend, np.zeros(len(points))]) * 0.6 * size
         cloud = fractal_noise(moved, footprint, 1.5 * size, 5, 0.6, seed + 2)
         vein = 1 - np.clip(np.abs(fractal_noise(moved, footprint, size, 4, 0.5, seed + 3)) / 0.05, 0, 1)
+        vein = 0.13 + (vein - 0.13) * fade(size / 4, footprint)  # veins cover about so much
         grain = np.clip(fractal_noise(points, footprint, 0.006, 3, 0.8, seed + 4) * 3 - 0.5, 0, 1)
         colour = mix(ground, np.asarray(ground) * 0.6, 0.5 + 1.4 * cloud)
         return np.clip(mix(mix(colour, veins, 0.7 * vein), grains, grain * fade(0.006, footprint)), 0, 1)
@@ -64,10 +65,11 @@ def scattered(ground: Colour, palette: Sequence[Colour], size: float, seed: int 
             off = np.hypot(u % 1 - centre_u, v % 1 - centre_v)
             off = np.where(chance > 0.75, np.abs(off - 0.75 * radius) + 0.75 * radius, off)
             inside = (radius - off) * wide
-            share = (
-                np.clip(inside / np.maximum(footprint, 0.0003) + 0.5, 0, 1) * (chance > 0.3) * fade(wide / 3, footprint)
-            )
-            colour = mix(colour, colours[(ink * len(colours)).astype(int)], 0.9 * share)
+            share = np.clip(inside / np.maximum(footprint, 0.0003) + 0.5, 0, 1) * (chance > 0.3)
+            visible = fade(wide / 3, footprint)
+            colour = mix(colour, colours[(ink * len(colours)).astype(int)], 0.9 * share * visible)
+            # From afar the dots, a sixth of the surface, melt into their mean.
+            colour = mix(colour, colours.mean(axis=0), 0.15 * (1 - visible))
         return np.clip(colour * cloth[:, None], 0, 1)
 
     return texture
@@ -78,7 +80,7 @@ def pictured(half: Sequence[float], border: float, seed: int = 0) -> Texture:
 
     def texture(points: np.ndarray, footprint: np.ndarray) -> np.ndarray:
         picture = photograph(points, footprint, 1.2 * min(half), seed)
-        inside = np.min(np.asarray(half) - border - np.abs(points[:, :2]), axis=1)
+        inside = np.minimum(half[0] - np.abs(points[:, 0]), half[1] - np.abs(points[:, 1])) - border
         return mix((0.78, 0.77, 0.74), picture, np.clip(inside / np.maximum(footprint, 1e-12) + 0.5, 0, 1))
 
     return texture

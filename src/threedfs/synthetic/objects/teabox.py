@@ -6,7 +6,7 @@ import numpy as np
 
 from threedfs.synthetic.fields import Field, box, cylinder, smooth_union, subtract, torus, union
 from threedfs.synthetic.noise import fractal_noise
-from threedfs.synthetic.objects.placing import about_z, placed, side_of_box
+from threedfs.synthetic.objects.placing import placed, side_of_box
 from threedfs.synthetic.solid import Material, Solid, Texture, build_solid
 from threedfs.synthetic.textures import mix, photograph, plain, printed
 
@@ -28,12 +28,12 @@ def make_teabox(spacing: float = 0.0009, seed: int = 51) -> Solid:
     tin = Material(_lithograph(seed), 0.45, 110, 0.05)
     lacquer = Material(plain(_LACQUER, 0.03, 0.03, seed + 1), 0.5, 140, 0.06)
     gold = Material(plain(_GOLD, 0.06, 0.01, seed + 2), 0.6, 90, 0.22)
-    turn = about_z(-14.0)
+    straight = np.eye(3)
     parts = [
-        placed(box((0, 0, 0), _HALF, 0.004), tin, (0, 0, _HALF[2]), turn),
-        placed(_band(), gold, (0, 0, 2 * _HALF[2]), turn),
-        placed(_lid(), lacquer, (0, 0, 2 * _HALF[2]), turn),
-        placed(_knob(), gold, (0, 0, 2 * _HALF[2]), turn),
+        placed(box((0, 0, 0), _HALF, 0.004), tin, (0, 0, _HALF[2]), straight),
+        placed(_band(), gold, (0, 0, 2 * _HALF[2]), straight),
+        placed(_lid(), lacquer, (0, 0, 2 * _HALF[2]), straight),
+        placed(_knob(), gold, (0, 0, 2 * _HALF[2]), straight),
     ]
     return build_solid(parts, (-0.056, -0.052, 0.0), (0.056, 0.052, 0.135), spacing)
 
@@ -65,22 +65,30 @@ def _lithograph(seed: int) -> Texture:
 
     def texture(points: np.ndarray, footprint: np.ndarray) -> np.ndarray:
         side, flat = side_of_box(points, _HALF)
-        lacquer = np.asarray(_LACQUER) * (1 + 0.05 * fractal_noise(points, footprint, 0.02, 4, 0.6, seed))[:, None]
-        edge = np.maximum(footprint, 0.0002)
-        front, back = side == 2, side == 3
+        colour = np.asarray(_LACQUER) * (1 + 0.05 * fractal_noise(points, footprint, 0.02, 4, 0.6, seed))[:, None]
+        for face, paint in ((2, front), (3, back)):
+            on = np.flatnonzero(side == face)
+            colour[on] = paint(colour[on], flat[on], footprint[on])
+        return np.clip(colour, 0, 1)
 
-        def panel(half_x: float, half_y: float) -> np.ndarray:
-            q = np.maximum(np.abs(flat[:, :2]) - (half_x - 0.006, half_y - 0.006), 0)
-            return 0.006 - np.hypot(q[:, 0], q[:, 1])
-
-        def paint(colour: np.ndarray, ink: np.ndarray, inside: np.ndarray, where: np.ndarray) -> np.ndarray:
-            return mix(colour, ink, np.where(where, np.clip(inside / edge + 0.5, 0, 1), 0))
-
-        rim, label = panel(0.033, 0.037), panel(0.0312, 0.0352)
-        colour = paint(lacquer, np.broadcast_to(_GOLD, points.shape), rim, front)
-        colour = paint(colour, title(flat + np.array([0.004, 0.001, 0]), footprint), label, front)
+    def front(colour: np.ndarray, flat: np.ndarray, footprint: np.ndarray) -> np.ndarray:
+        colour = _paint(colour, np.tile(_GOLD, (len(flat), 1)), _panel(flat, 0.033, 0.037), footprint)
+        letters = title(flat + np.array([0.004, 0.001, 0.0]), footprint)
+        colour = _paint(colour, letters, _panel(flat, 0.0312, 0.0352), footprint)
         oval = 0.019 * (1 - np.hypot(flat[:, 0] / 0.026, (flat[:, 1] + 0.006) / 0.019))
-        colour = paint(colour, photograph(flat, footprint, 0.03, seed + 6), oval, front)
-        return np.clip(paint(colour, text(flat, footprint), panel(0.030, 0.034), back), 0, 1)
+        return _paint(colour, photograph(flat, footprint, 0.03, seed + 6), oval, footprint)
+
+    def back(colour: np.ndarray, flat: np.ndarray, footprint: np.ndarray) -> np.ndarray:
+        return _paint(colour, text(flat, footprint), _panel(flat, 0.030, 0.034), footprint)
 
     return texture
+
+
+def _panel(flat: np.ndarray, half_x: float, half_y: float) -> np.ndarray:
+    """Distance (N,) inside the border of a rounded rectangle, negative outside."""
+    q = np.maximum(np.abs(flat[:, :2]) - (half_x - 0.006, half_y - 0.006), 0)
+    return 0.006 - np.hypot(q[:, 0], q[:, 1])
+
+
+def _paint(colour: np.ndarray, ink: np.ndarray, inside: np.ndarray, footprint: np.ndarray) -> np.ndarray:
+    return mix(colour, ink, np.clip(inside / np.maximum(footprint, 0.0002) + 0.5, 0, 1))
