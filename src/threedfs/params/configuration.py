@@ -11,8 +11,8 @@ from typing import Any
 import jsonschema
 
 from threedfs.errors import UserError
+from threedfs.params.rendered import RENDERED_KEYS, bring_render
 from threedfs.params.schema import declared_stages, make_params, stage_schema
-from threedfs.synthetic.takes import take_module
 
 METHODS = ("fused_sdf",)
 SEQUENCE_NAME = r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$"
@@ -27,8 +27,7 @@ def configuration_schema() -> dict[str, Any]:
         "additionalProperties": False,
         "properties": {
             "source": _PATH,
-            "rendered": {"type": ["string", "null"]},
-            "true_cameras": {"type": "boolean"},
+            **RENDERED_KEYS,
             "cameras": _PATH,
             "calibration": _PATH,
             "truth": {"type": ["object", "null"], "additionalProperties": False, "properties": truth},
@@ -96,47 +95,15 @@ def list_sequences(config: Mapping[str, Any], home: Path) -> dict[str, dict[str,
         if not re.match(SEQUENCE_NAME, name):
             raise UserError(_explain_name(name, f"the file {config['video']}; rename it, or list it under sequences"))
         given = {name: {"source": config["video"]}}
-    sequences = {name: _find(name, entry) for name, entry in given.items()} or {"sample": _sample(home)}
+    sequences = {name: _flatten(bring_render(name, entry)) for name, entry in given.items()} or {
+        "sample": _sample(home)
+    }
     for name, entry in sequences.items():
         for key, path in entry.items():
             if entry["rendered"] is None and path is not None and not os.path.exists(path):
                 where = f"sequences.{name}.{key.replace('truth_', 'truth.')}"
                 raise UserError(f"{where}: expected a file or folder, found no {path} in {os.getcwd()}.")
     return sequences
-
-
-def _find(name: str, entry: Mapping[str, Any]) -> dict[str, str | None]:
-    """Return the paths of a sequence that is given or rendered."""
-    take = entry.get("rendered")
-    if take is None:
-        if entry.get("source") is None:
-            raise UserError(
-                f"configuration, sequences.{name}: expected the key source (a video or photos) or rendered (a take), "
-                "found neither; see config/README.md."
-            )
-        if entry.get("true_cameras"):
-            raise UserError(f"configuration, sequences.{name}.true_cameras: only a rendered sequence has them.")
-        return _flatten(entry)
-    beside = sorted(key for key in entry if key not in ("rendered", "true_cameras") and entry[key] is not None)
-    if beside:
-        raise UserError(
-            f"configuration, sequences.{name}: expected nothing but true_cameras beside rendered, got "
-            f"{', '.join(beside)}; a rendered sequence brings its own images and truth."
-        )
-    try:
-        take_module(take)
-    except UserError as fault:
-        raise UserError(f"configuration, sequences.{name}.{fault}") from fault
-    folder = f"results/{name}/00_render"
-    truth = {"masks": "masks", "cameras": "cameras.json", "mesh": "mesh.ply", "depth": "depth"}
-    return _flatten(
-        {
-            "rendered": take,
-            "source": f"{folder}/video.mp4",
-            "cameras": f"{folder}/cameras.json" if entry.get("true_cameras") else None,
-            "truth": {key: f"{folder}/{file}" for key, file in truth.items()} | {"depth_scale": 10000.0},
-        }
-    )
 
 
 def _sample(home: Path) -> dict[str, str | None]:

@@ -29,5 +29,8 @@ def make_take() -> Take:
     light = Light((0.7, -0.6, 1.3), 0.15, (1.95, 1.70, 1.40), (0.20, 0.21, 0.23))
     path = walk(solid, seed=106, start=-70.0, turns=0.95, elevation=(18.0, 48.0))
     return Take(
-        Scene(solid, table, room, light), path, Sensor(gain=1.5, drift=0.10, shot_noise=0.014, seed=107), shutter=1 / 60
+        Scene(solid, table, room, light),
+        path,
+        Sensor(gain=1.65, drift=0.10, shot_noise=0.014, seed=107),
+        shutter=1 / 60,
     )

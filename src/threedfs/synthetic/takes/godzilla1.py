@@ -1,4 +1,4 @@
-"""The monster on a table laid with print and wrapping paper."""
+"""The monster on a counter of terrazzo, among papers."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from threedfs.synthetic.room import Room
 from threedfs.synthetic.scene import Scene
 from threedfs.synthetic.sensor import Sensor
 from threedfs.synthetic.solid import Material
-from threedfs.synthetic.surfaces import scattered
 from threedfs.synthetic.table import Table
 from threedfs.synthetic.tabletop import Take, walk
 from threedfs.synthetic.textures import speckled
@@ -18,11 +17,7 @@ from threedfs.synthetic.things import card, lay_around, napkin, note, page
 def make_take() -> Take:
     """Make the take."""
     solid = make_godzilla()
-    support = Material(
-        scattered((0.58, 0.56, 0.52), [(0.12, 0.14, 0.20), (0.40, 0.10, 0.08), (0.62, 0.48, 0.20)], 0.085, seed=2010),
-        0.05,
-        40,
-    )
+    support = Material(speckled((0.50, 0.48, 0.44), (0.17, 0.14, 0.12), 0.009, 0.35, seed=2010), 0.15, 80)
     things = (page(2011), napkin(2012), card(2013), note(2014), page(2016))
     table = Table((0.62, 0.52), support, lay_around(solid, things, seed=204, gap=(0.01, 0.06)))
     room = Room(
