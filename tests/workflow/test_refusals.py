@@ -23,7 +23,7 @@ CASES = {
     "no source": ("sequences: {mug: {cameras: config}}", "sequences.mug: expected the key source"),
     "source and take": (
         "sequences: {mug: {source: config, rendered: books}}",
-        "sequences.mug: expected nothing but true_cameras beside rendered, got source",
+        "sequences.mug: expected no source beside rendered",
     ),
     "no such take": ("sequences: {mug: {rendered: mug}}", "sequences.mug.rendered: expected one of books,"),
     "true cameras of a video": (

@@ -11,6 +11,7 @@ from threedfs.synthetic.takes import take_module
 RENDERED_KEYS = {"rendered": {"type": ["string", "null"]}, "true_cameras": {"type": "boolean"}}
 """JSON schema of the keys of a rendered sequence."""
 
+_BROUGHT = ("source", "cameras", "intrinsics", "calibration", "truth")
 _TRUTH = {"masks": "masks", "cameras": "cameras.json", "mesh": "mesh.ply", "depth": "depth"}
 _DEPTH_SCALE = 10000.0  # levels of a true depth image in a metre
 
@@ -39,11 +40,11 @@ def bring_render(name: str, entry: Mapping[str, Any]) -> Mapping[str, Any]:
         if entry.get("true_cameras"):
             raise UserError(f"{where}.true_cameras: only a rendered sequence has them; give its cameras instead.")
         return entry
-    beside = sorted(key for key in entry if key not in RENDERED_KEYS and entry[key] is not None)
+    beside = [key for key in _BROUGHT if entry.get(key) is not None]
     if beside:
         raise UserError(
-            f"{where}: expected nothing but true_cameras beside rendered, got {', '.join(beside)}; a rendered "
-            "sequence brings its own images and truth."
+            f"{where}: expected no {', '.join(beside)} beside rendered; a rendered sequence brings its own images, "
+            "cameras and truth."
         )
     try:
         take_module(take)
@@ -51,7 +52,7 @@ def bring_render(name: str, entry: Mapping[str, Any]) -> Mapping[str, Any]:
         raise UserError(f"{where}.{fault}") from fault
     folder = f"results/{name}/00_render"
     return {
-        "rendered": take,
+        **entry,
         "source": f"{folder}/video.mp4",
         "cameras": f"{folder}/cameras.json" if entry.get("true_cameras") else None,
         "truth": {key: f"{folder}/{file}" for key, file in _TRUTH.items()} | {"depth_scale": _DEPTH_SCALE},
