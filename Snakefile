@@ -10,6 +10,7 @@ configfile: Path(workflow.basedir) / "config" / "config.yaml"
 
 include: "workflow/rules/common.smk"
 include: "workflow/rules/run.smk"
+include: "workflow/rules/render.smk"
 include: "workflow/rules/frames.smk"
 include: "workflow/rules/poses.smk"
 include: "workflow/rules/keyframes.smk"

@@ -44,7 +44,7 @@ def test_generated_file_is_in_step_with_the_parameters(name):
 
 def test_every_module_of_parameters_is_a_stage():
     modules = {path.stem for path in (ROOT / "src/threedfs/params").glob("*.py")}
-    shared = {"__init__", "field", "schema", "configuration", "document", "fusion", "component"}
+    shared = {"__init__", "field", "schema", "configuration", "document", "fusion", "component", "rendered"}
     assert modules - shared == set(declared_stages()) <= set(STAGES)
 
 

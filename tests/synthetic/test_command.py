@@ -12,6 +12,9 @@ from threedfs.synthetic.__main__ import main
         (["sample", "out", "--processes", "0"], "expected at least 1, got 0"),
         (["example", "out"], "invalid choice"),
         (["sample"], "required: output"),
+        (["take", "mug", "out"], "invalid choice: 'mug'"),
+        (["take", "books", "out", "--width", "100"], "render.width: expected a multiple of 8, got 100"),
+        (["take", "books", "out", "--frames", "1"], "--frames: expected at least 2, got 1"),
     ],
 )
 def test_bad_words_stop_with_a_sentence(words, sentence, tmp_path, capsys):

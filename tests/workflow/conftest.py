@@ -17,6 +17,7 @@ ROOT = Path(__file__).resolve().parents[2]
 BIN = Path(sys.executable).parent
 
 SIGNATURES = {
+    "render": ("", "video cameras mesh masks depth", "take"),
     "calibrate": ("boards", "calibration", ""),
     "frames": ("source masks", "frames", ""),
     "poses": ("frames cameras calibration", "poses points", ""),

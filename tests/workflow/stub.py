@@ -19,7 +19,7 @@ def write(stage, inputs, outputs, names, params, job):
     given["inputs"] = {name: digest(value, names.get("keyframe")) for name, value in inputs.items()}
     for name, path in outputs.items():
         text = json.dumps({"output": name, **given}, sort_keys=True)
-        if path.name == "masks":
+        if path.name in ("masks", "depth"):
             path.mkdir()
             path = path / "000001.png"
         elif path.name == "keyframes.json":

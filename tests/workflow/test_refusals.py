@@ -21,6 +21,16 @@ CASES = {
         "sequences.mug.truth.masks: expected a file or folder, found no m",
     ),
     "no source": ("sequences: {mug: {cameras: config}}", "sequences.mug: expected the key source"),
+    "source and take": (
+        "sequences: {mug: {source: config, rendered: books}}",
+        "sequences.mug: expected no source beside rendered",
+    ),
+    "no such take": ("sequences: {mug: {rendered: mug}}", "sequences.mug.rendered: expected one of books,"),
+    "true cameras of a video": (
+        "sequences: {mug: {source: config, true_cameras: true}}",
+        "sequences.mug.true_cameras: only a rendered sequence has them",
+    ),
+    "odd width": ("render: {width: 100}", "render.width: expected a multiple of 8, got 100"),
     "unknown method": ("methods: [magic]", "methods.0: expected one of fused_sdf"),
     "negative seed": ("seed: -1", "seed: expected at least 0, got -1"),
 }

@@ -43,7 +43,8 @@ def test_every_rule_has_all_blocks_in_one_order():
             continue
         for rule in path.read_text().split("\n\n\n")[1:]:
             found = re.findall(r"^    (\w+):", rule, re.MULTILINE)
-            assert found == blocks, f"{path.name}: {rule.splitlines()[0]}"
+            own = blocks if "input" in found else blocks[1:]  # the first rule makes its data from nothing
+            assert found == own, f"{path.name}: {rule.splitlines()[0]}"
 
 
 def test_common_rules_stay_short():

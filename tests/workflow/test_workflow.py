@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 import os
 import re
@@ -14,14 +15,21 @@ from collections import Counter
 from threedfs.store.files import remove_abandoned
 
 RULES = (
-    "calibrate frames poses undistort keyframes semidense edges depth consistency fuse_scene locate fuse_object "
+    "render calibrate frames poses undistort keyframes semidense edges depth consistency fuse_scene locate fuse_object "
     "object evaluate collect all"
 ).split()
+FILMED = ("video.mp4", "cameras.json", "mesh.ply")
 
 
 def jobs_done(output: str) -> Counter:
     """Count the jobs that computed, by stage."""
     return Counter(re.findall(r"^(\w+) of .*: done in", output, re.MULTILINE))
+
+
+def records(results, sequence):
+    """Read the action records that a sequence's logs name."""
+    keys = (log.read_text().split()[-1] for log in (results / sequence / "logs").rglob("*.log"))
+    return [json.loads((results / ".store/actions" / key[:2] / f"{key}.json").read_text()) for key in keys]
 
 
 def jobs_taken(output: str) -> Counter:
@@ -36,7 +44,7 @@ def test_lists_every_rule(project):
 
 def test_first_run_does_every_job_and_prints_the_summary(first_run):
     project, output = first_run
-    once = set(RULES) - {"calibrate", "all", "semidense", "edges", "depth"}
+    once = set(RULES) - {"render", "calibrate", "all", "semidense", "edges", "depth"}
     assert jobs_done(output) == Counter({**dict.fromkeys(once, 1), "semidense": 2, "edges": 2, "depth": 2})
     assert re.search(r"sample fused_sdf +0.500", output)
     assert (project.folder / "results/metrics.csv").is_file()
@@ -114,6 +122,35 @@ def test_given_cameras_and_calibration_reach_their_stages(project):
     poses = json.loads((project.folder / "results/mug/02_poses/poses.json").read_text())
     assert all(poses["inputs"][name] is not None for name in ("frames", "cameras", "calibration"))
     assert "own,mug,fused_sdf" in (project.folder / "results/metrics.csv").read_text()
+
+
+def test_rendered_sequences_of_one_take_are_filmed_once_and_bring_their_truth(project):
+    text = "sequences: {one: {rendered: books}, other: {rendered: books, true_cameras: true}}\n"
+    (project.folder / "own.yaml").write_text(text)
+    output = project.run("--configfile", "own.yaml")
+    assert jobs_done(output)["render"] == 1 and jobs_taken(output)["render"] == 1
+    assert jobs_done(output)["frames"] == 1 and jobs_done(output)["poses"] == 2
+    results = project.folder / "results"
+    filmed = {name: hashlib.sha256((results / f"one/00_render/{name}").read_bytes()).hexdigest() for name in FILMED}
+    for sequence, cameras in (("one", None), ("other", filmed["cameras.json"])):
+        frames = zip(("frames/source", "poses/cameras"), (filmed["video.mp4"], cameras), strict=True)
+        for name, expected in frames:
+            stage, key = name.split("/")
+            (record,) = (r for r in records(results, sequence) if r["stage"] == stage)
+            assert record["inputs"][key] == expected
+        (record,) = (r for r in records(results, sequence) if r["stage"] == "evaluate")
+        assert record["inputs"]["cameras_truth"] == filmed["cameras.json"]
+        assert record["inputs"]["mesh_truth"] == filmed["mesh.ply"]
+        assert record["inputs"]["masks_truth"] is not None and record["inputs"]["depth_truth"] is not None
+    assert "Nothing to be done" in project.run("--configfile", "own.yaml")
+
+
+def test_edited_object_films_its_takes_again_and_no_other(project):
+    (project.folder / "own.yaml").write_text("sequences: {a: {rendered: books}, b: {rendered: teabox}}\n")
+    order = ("results/a/00_render/video.mp4", "results/b/00_render/video.mp4", "--configfile", "own.yaml")
+    assert jobs_done(project.run(*order)) == Counter(render=2)
+    project.edit("src/threedfs/synthetic/objects/books.py", "seed: int = 61", "seed: int = 62")
+    assert jobs_done(project.run(*order)) == Counter(render=1)
 
 
 def test_killed_run_goes_on_to_the_same_bytes(finished):

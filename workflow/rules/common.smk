@@ -28,9 +28,9 @@ wildcard_constraints:
     method="[^/]+",
 
 
-def code_of(stage):
+def code_of(stage, *modules):
     """Return the digest of a stage's code: an edit reruns the stage, a comment does not."""
-    return digest_code(f"threedfs.stages.{stage}").digest
+    return digest_code(f"threedfs.stages.{stage}", *modules).digest
 
 
 def settings_of(stage):
@@ -41,21 +41,24 @@ def settings_of(stage):
 def given(key):
     """Return an input function: a file or folder that the configuration names for a sequence, or nothing.
 
-    A folder's own time says little about its files: `fingerprint_of` watches those.
+    A folder's own time says little about its files: `fingerprint_of` watches those that no rule makes.
     """
 
     def find(wildcards):
-        path = SEQUENCES[wildcards.sequence][key]
-        return [] if path is None else ancient(path) if Path(path).is_dir() else path
+        sequence = SEQUENCES[wildcards.sequence]
+        path, own = sequence[key], not sequence["rendered"]
+        return path and (ancient(path) if own and Path(path).is_dir() else path) or []
 
     return find
 
 
 def fingerprint_of(*keys):
-    """Return a params function: digests of the folders that the configuration names for a sequence."""
+    """Return a params function: digests of a sequence's folders in the configuration, if no rule makes them."""
 
     def digest(wildcards):
-        paths = [Path(SEQUENCES[wildcards.sequence][key] or "") for key in keys]
+        sequence = SEQUENCES[wildcards.sequence]
+        own = [] if sequence["rendered"] else keys
+        paths = [Path(sequence[key] or "") for key in own]
         return [
             STORE_DIGESTS.folder_of_files(path) if path.name and path.is_dir() else ""
             for path in paths

@@ -23,4 +23,5 @@ run_job(
     threads=snakemake.threads,
     seed=snakemake.params.seed,
     refusal=snakemake.params.get("refusal", ""),
+    modules=snakemake.params.get("modules", []),
 )

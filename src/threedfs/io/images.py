@@ -10,6 +10,9 @@ import numpy as np
 from threedfs.errors import UserError
 from threedfs.io.atomic import atomic
 
+# Readers of depth images take this level, like 0, for none.
+_NO_DEPTH = 65535
+
 
 def read_image(path: Path) -> np.ndarray:
     """Read an image file as (H, W, 3) uint8 RGB, upright by its EXIF orientation.
@@ -23,7 +26,7 @@ def read_image(path: Path) -> np.ndarray:
 
 
 def write_png(path: Path, image: np.ndarray) -> None:
-    """Write (H, W) or (H, W, 3) RGB uint8 as PNG."""
+    """Write (H, W) uint8 or uint16, or (H, W, 3) RGB uint8, as PNG."""
     if image.ndim == 3:
         image = image[..., ::-1]
     done, data = cv2.imencode(".png", np.ascontiguousarray(image), [cv2.IMWRITE_PNG_COMPRESSION, 6])
@@ -47,6 +50,12 @@ def read_mask(path: Path) -> np.ndarray:
 def write_mask(path: Path, mask: np.ndarray) -> None:
     """Write a mask (H, W) bool as PNG: 255 object, 0 background."""
     write_png(path, mask.astype(np.uint8) * 255)
+
+
+def write_depth_image(path: Path, depth: np.ndarray, scale: float) -> None:
+    """Write depth (H, W) as 16-bit PNG: times `scale`, rounded; 0 where it is not finite or too large."""
+    levels = np.rint(np.nan_to_num(depth, nan=0.0, posinf=0.0) * scale)
+    write_png(path, np.where(levels < _NO_DEPTH, levels, 0).astype(np.uint16))
 
 
 def _decode(path: Path, mode: int, what: str) -> np.ndarray:

@@ -11,6 +11,7 @@ from typing import Any
 import jsonschema
 
 from threedfs.errors import UserError
+from threedfs.params.rendered import RENDERED_KEYS, bring_render
 from threedfs.params.schema import declared_stages, make_params, stage_schema
 
 METHODS = ("fused_sdf",)
@@ -28,10 +29,10 @@ def configuration_schema() -> dict[str, Any]:
     sequence = {
         "type": "object",
         "additionalProperties": False,
-        "required": ["source"],
         "properties": {
-            "source": {"type": "string"},
+            "source": _PATH,
             "dataset": _DATASET,
+            **RENDERED_KEYS,
             "cameras": _PATH,
             "calibration": _PATH,
             "truth": {"type": ["object", "null"], "additionalProperties": False, "properties": truth},
@@ -83,12 +84,13 @@ def list_sequences(config: Mapping[str, Any], home: Path) -> dict[str, dict[str,
     Returns
     -------
     dict of str to dict
-        `SEQUENCE_FILES`: paths or None; dataset.
+        `SEQUENCE_FILES`: paths or None; dataset; rendered: the take that is filmed for the sequence, or None. The paths
+        of a rendered sequence are results of the run.
 
     Raises
     ------
     UserError
-        If a name cannot name a folder, or the one video is not there.
+        If a name cannot name a folder, the one video is not there, or it is not clear where the images come from.
     """
     given = dict(config["sequences"] or {})
     if config["video"]:
@@ -98,7 +100,8 @@ def list_sequences(config: Mapping[str, Any], home: Path) -> dict[str, dict[str,
         if not re.match(SEQUENCE_NAME, name):
             raise UserError(_explain_name(name, f"the file {config['video']}; rename it, or list it under sequences"))
         given = {name: {"source": config["video"]}}
-    sequences = {name: _flatten(entry) for name, entry in given.items()} or {"sample": _sample(home)}
+    sequences = {name: _flatten(bring_render(name, entry)) for name, entry in given.items()}
+    sequences = sequences or {"sample": _sample(home)}
     return {name: {"dataset": config["dataset"], **entry} for name, entry in sequences.items()}
 
 
@@ -122,7 +125,7 @@ def set_aside_missing(
     missing = {}
     for name, entry in sequences.items():
         for key in SEQUENCE_FILES:
-            if entry[key] is not None and not os.path.exists(entry[key]):
+            if entry["rendered"] is None and entry[key] is not None and not os.path.exists(entry[key]):
                 where = f"sequences.{name}.{key.replace('truth_', 'truth.')}"
                 missing.setdefault(name, f"{where}: expected a file or folder, found no {entry[key]} in {os.getcwd()}.")
     emptied = {name: {**sequences[name], **dict.fromkeys(SEQUENCE_FILES)} for name in missing}
@@ -145,7 +148,7 @@ def _sample(home: Path) -> dict[str, str | None]:
 def _flatten(entry: Mapping[str, Any]) -> dict[str, str | None]:
     truth = {f"truth_{key}": path for key, path in (entry.get("truth") or {}).items()}
     own = {"dataset": entry["dataset"]} if "dataset" in entry else {}
-    return {key: {**entry, **truth}.get(key) for key in SEQUENCE_FILES} | own
+    return {key: {**entry, **truth}.get(key) for key in SEQUENCE_FILES} | {"rendered": entry.get("rendered")} | own
 
 
 def _explain(fault: jsonschema.ValidationError) -> str:

@@ -31,6 +31,8 @@ video: null
 #     cameras: null                 # given cameras, instead of structure from motion
 #     calibration: null             # photos or a video of a checkerboard
 #     truth: {masks: null, cameras: null, mesh: null, depth: null}
+#   dragon:
+#     rendered: dragon              # a take of the synthetic data set, with its truth
 sequences: {}
 
 # How the object is cut out of the fused volume.
@@ -80,6 +82,10 @@ _KEYS = {
     "sequences.<name>.cameras": "given cameras: a COLMAP model folder, `transforms.json`, `cameras.json` with "
     "`cam_to_world`, or a folder of CONTOUR projection matrices; null: structure from motion",
     "sequences.<name>.calibration": "photos or a video of a checkerboard; null: the camera calibrates itself",
+    "sequences.<name>.rendered": "instead of all of the above and below: a take of the synthetic data set Tabletop-12 "
+    "(config/datasets/tabletop12.yaml), filmed by the run with all its truth",
+    "sequences.<name>.true_cameras": "of a rendered sequence: take its true cameras as given, instead of structure "
+    "from motion",
     "sequences.<name>.truth.masks": "folder of masks named like the frames (white: object), to measure against; "
     "their frames become keyframes",
     "sequences.<name>.truth.cameras": "reference cameras, to measure against",

@@ -25,7 +25,7 @@ class Code:
     Attributes
     ----------
     digest : str
-        SHA-256 over the syntax trees of the module and of the modules of its package that it imports, transitively.
+        SHA-256 over the syntax trees of the modules and of those of their package that they import, transitively.
     libraries : tuple of str
         Top-level names of everything else that these import, sorted; the standard library included.
     """
@@ -34,7 +34,7 @@ class Code:
     libraries: tuple[str, ...]
 
 
-def digest_code(module: str) -> Code:
+def digest_code(module: str, *more: str) -> Code:
     """Find the modules that `module` runs on and digest them.
 
     Comments, docstrings, blank lines and line breaks do not count; imports inside functions do.
@@ -43,6 +43,8 @@ def digest_code(module: str) -> Code:
     ----------
     module : str
         e.g. ``"threedfs.stages.depth"``; it is read, not imported.
+    *more : str
+        Modules of the same package that it loads by name, which its source does not tell.
 
     Raises
     ------
@@ -51,10 +53,11 @@ def digest_code(module: str) -> Code:
     """
     package = module.partition(".")[0]
     root = _package_folder(package)
-    source = _source_file(root, module)
-    if source is None:
-        raise ModuleNotFoundError(f"no module named {module} under {root}")
-    found, pending, libraries = {}, _with_parents(module), set()
+    found, pending, libraries = {}, set(), set()
+    for start in (module, *more):
+        if _source_file(root, start) is None:
+            raise ModuleNotFoundError(f"no module named {start} under {root}")
+        pending |= _with_parents(start)
     while pending:
         name = pending.pop()
         path = _source_file(root, name)

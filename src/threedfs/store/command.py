@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 import traceback
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -47,6 +47,7 @@ def run_job(
     threads: int,
     seed: int,
     refusal: str = "",
+    modules: Sequence[str] = (),
 ) -> None:
     """Perform one job and exit with status 1 if it fails.
 
@@ -54,7 +55,7 @@ def run_job(
 
     Parameters
     ----------
-    stage, inputs, outputs, settings, store, threads, seed
+    stage, inputs, outputs, settings, store, threads, seed, modules
         As `perform` takes them.
     wildcards : mapping of str to str
         All wildcards of the rule. The sequence only names the job in messages, so that two sequences of the same
@@ -83,6 +84,7 @@ def run_job(
                 progress=progress,
                 threads=threads,
                 seed=seed,
+                modules=modules,
             )
         except UserError as fault:
             print(f"threedfs: {stage} of {label}: {fault}", file=Tee(file, sys.stderr))

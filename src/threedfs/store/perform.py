@@ -8,7 +8,7 @@ import os
 import platform
 import resource
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -87,6 +87,7 @@ def perform(
     progress: Progress,
     threads: int = 1,
     seed: int = 0,
+    modules: Sequence[str] = (),
     package: str = "threedfs",
 ) -> Outcome:
     """Put a stage's outputs in place, from the store or by running the stage.
@@ -113,6 +114,8 @@ def perform(
         Takes the stage's notes.
     threads : int
     seed : int
+    modules : sequence of str
+        Full names of the modules that the stage loads by name; they count as its code.
     package : str
         Where stages are looked up.
 
@@ -124,7 +127,7 @@ def perform(
     started = time.monotonic()
     digests = InputDigests(store / "digests")
     objects = Objects(store / "objects", digests)
-    action = _identify(stage, inputs, settings, wildcards, digests, seed, package)
+    action = _identify(stage, inputs, settings, wildcards, digests, seed, modules, package)
     record = store / "actions" / action.key[:2] / f"{action.key}.json"
     known = _read_outputs(record)
     if known is not None and known.keys() == outputs.keys():
@@ -159,10 +162,11 @@ def _identify(
     wildcards: Mapping[str, str],
     digests: InputDigests,
     seed: int,
+    modules: Sequence[str],
     package: str,
 ) -> Action:
     module = f"{package}.stages.{stage}"
-    code = digest_code(module)
+    code = digest_code(module, *modules)
     declared = find_params(stage, package)
     params = None if declared is None else make_params(declared, settings)
     source = {

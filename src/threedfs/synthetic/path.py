@@ -35,6 +35,8 @@ class HandheldPath:
         Root mean square of the hand's tremor, in scene units and degrees.
     wander : float
         Root mean square of the slow drift of the aim, degrees.
+    jolts : int
+        How many times the hand starts: the aim jumps and comes back within a fifth of a second.
     seed : int
         Another seed, another hand.
     """
@@ -50,6 +52,7 @@ class HandheldPath:
     shake_position: float = 0.002
     shake_rotation: float = 0.15
     wander: float = 1.2
+    jolts: int = 0
     seed: int = 0
 
     def cam_from_world(self, time: float) -> np.ndarray:
@@ -74,7 +77,8 @@ class HandheldPath:
         aimed = look_at(centre, np.asarray(self.target), np.array([0.0, 0.0, 1.0]))
         slow = self.wander * _tremor(rng, time, 3, 0.12, 0.6)
         fast = self.shake_rotation * _tremor(rng, time, 3, 1.0, 9.0)
-        return make_transform(_small_rotation(np.radians(slow + fast)), np.zeros(3)) @ aimed
+        sudden = _starts(rng, time, self.duration, self.jolts)
+        return make_transform(_small_rotation(np.radians(slow + fast + sudden)), np.zeros(3)) @ aimed
 
 
 def _tremor(rng: np.random.Generator, time: float, size: int, low: float, high: float) -> np.ndarray:
@@ -83,6 +87,13 @@ def _tremor(rng: np.random.Generator, time: float, size: int, low: float, high: 
     amplitude = 1 / np.sqrt(frequency)
     amplitude /= np.sqrt((amplitude**2).sum(-1, keepdims=True) / 2)
     return (amplitude * np.sin(2 * np.pi * frequency * time + rng.uniform(0, 2 * np.pi, (size, 8)))).sum(-1)
+
+
+def _starts(rng: np.random.Generator, time: float, duration: float, count: int) -> np.ndarray:
+    """Rotation (3,), degrees, of a hand that starts `count` times, about 2 degrees each, evenly spread with chance."""
+    moments = (np.arange(count) + rng.uniform(0.2, 0.8, count)) / max(count, 1) * duration
+    axes = rng.normal(0.0, (1.4, 1.4, 0.6), (count, 3))
+    return np.exp(-(((time - moments) / 0.07) ** 2)) @ axes
 
 
 def _small_rotation(vector: np.ndarray) -> np.ndarray:

@@ -40,18 +40,26 @@ class Renderer:
 
     def depth(self, view: View) -> np.ndarray:
         """Return the exact depth (H, W) float64 of whatever each pixel's centre sees, scene units."""
-        origins, directions = self._rays(view)
-        on_object = self._cast_object(view, origins, directions).distance
-        return np.minimum(on_object, self._cast_rest(origins, directions)[0]).reshape(view.camera.shape)
+        return self.measure(view)[0]
 
     def mask(self, view: View) -> np.ndarray:
         """Return (H, W) bool: pixels whose centre sees the object."""
+        return self.measure(view)[1]
+
+    def measure(self, view: View) -> tuple[np.ndarray, np.ndarray]:
+        """Return `depth` and `mask` of a view."""
         origins, directions = self._rays(view)
-        hits = self._cast_object(view, origins, directions)
-        return (hits.distance < self._cast_rest(origins, directions)[0]).reshape(view.camera.shape)
+        on_object = self._cast_object(view, origins, directions).distance
+        on_rest = self._cast_rest(origins, directions)[0]
+        shape = view.camera.shape
+        return np.minimum(on_object, on_rest).reshape(shape), (on_object < on_rest).reshape(shape)
 
     def radiance(self, view: View, shift: tuple[float, float] = (0.0, 0.0)) -> np.ndarray:
         """Return the linear RGB (H, W, 3) float64 seen `shift` (u, v) pixels beside the pixel centres."""
+        return self.look(view, shift)[0]
+
+    def look(self, view: View, shift: tuple[float, float] = (0.0, 0.0)) -> tuple[np.ndarray, np.ndarray]:
+        """Return `radiance` and the depth (H, W) float64 of what is seen there."""
         origins, directions = self._rays(view, shift)
         hits = self._cast_object(view, origins, directions)
         spread = _FOOTPRINT / view.camera.fx
@@ -63,7 +71,8 @@ class Renderer:
             Hits(hits.triangle[shown], hits.distance[shown], hits.weights[shown]),
             spread,
         )
-        return colour.reshape(*view.camera.shape, 3)
+        depth = np.minimum(hits.distance, distance)
+        return colour.reshape(*view.camera.shape, 3), depth.reshape(view.camera.shape)
 
     def _rays(self, view: View, shift: tuple[float, float] = (0.0, 0.0)) -> tuple[np.ndarray, np.ndarray]:
         """Return the rays of a view that stands inside the room.

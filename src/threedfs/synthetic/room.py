@@ -63,6 +63,23 @@ class Room:
         colour = mix((0.9, 0.85, 0.74), (0.55, 0.62, 0.6), hash_cells(bay // 3, seed=seed + 2)) * paper[:, None]
         emitted = np.zeros_like(colour)
 
+        # Each pattern is made only where it shows.
+        framed = (kind >= 0.45) & (kind < 0.8) & (np.abs(x - 0.57) < 0.36) & (np.abs(height - 1.15) < 0.45)
+        inner = np.flatnonzero(framed & (np.abs(x - 0.57) < 0.31) & (np.abs(height - 1.15) < 0.40))
+        shelves = np.flatnonzero((kind < 0.45) & (height < 1.9) & (x > 0.03) & (x < bay_width - 0.03))
+        pane = (kind >= 0.8) & (np.abs(x - 0.57) < 0.42) & (height > 0.85) & (height < 2.1)
+        pane = np.flatnonzero(pane & (np.abs(x - 0.57) > 0.02) & (np.abs(height - 1.45) > 0.02))
+        colour[shelves] = self._books(along[shelves], height[shelves], bay[shelves], footprint[shelves])
+        colour[framed] = (0.1, 0.07, 0.05)
+        colour[inner] = photograph(place[inner], footprint[inner], 0.28, seed + 10)
+        sky = 0.75 + 0.4 * fractal_noise(place[pane], footprint[pane], 0.7, 5, 0.6, seed + 15)
+        emitted[pane] = sky[:, None] * np.asarray(self.window)
+        colour = np.where((height < 0.09)[:, None], (0.8, 0.78, 0.74), colour)
+        return colour, emitted
+
+    def _books(self, along: np.ndarray, height: np.ndarray, bay: np.ndarray, footprint: np.ndarray) -> np.ndarray:
+        """Colour (N, 3) of shelves full of books."""
+        seed = self.wall_seed
         shelf = np.floor(height / 0.36)
         book_cell = np.floor(along / 0.045 + 3 * hash_cells(shelf, bay, seed=seed + 3))
         hue = np.stack([hash_cells(book_cell, shelf, seed=seed + 4 + c) for c in range(3)], axis=-1)
@@ -75,19 +92,5 @@ class Room:
         spine = np.where(label[:, None], 0.55, spine)
         books = np.where((level < top)[:, None], spine, 0.03)
         books = np.where((level > 0.335)[:, None], (0.35, 0.24, 0.14), books)
-        books = books * fade(0.045, footprint)[:, None] + 0.18 * (1 - fade(0.045, footprint))[:, None]
-        shelves = (kind < 0.45) & (height < 1.9) & (x > 0.03) & (x < bay_width - 0.03)
-        colour = np.where(shelves[:, None], books, colour)
-
-        framed = (kind >= 0.45) & (kind < 0.8) & (np.abs(x - 0.57) < 0.36) & (np.abs(height - 1.15) < 0.45)
-        inner = framed & (np.abs(x - 0.57) < 0.31) & (np.abs(height - 1.15) < 0.40)
-        picture = photograph(place, footprint, 0.28, seed + 10)
-        colour = np.where(framed[:, None], (0.1, 0.07, 0.05), colour)
-        colour = np.where(inner[:, None], picture, colour)
-
-        pane = (kind >= 0.8) & (np.abs(x - 0.57) < 0.42) & (height > 0.85) & (height < 2.1)
-        pane &= (np.abs(x - 0.57) > 0.02) & (np.abs(height - 1.45) > 0.02)
-        sky = 0.75 + 0.4 * fractal_noise(place, footprint, 0.7, 5, 0.6, seed + 15)
-        emitted[pane] = sky[pane, None] * np.asarray(self.window)
-        colour = np.where((height < 0.09)[:, None], (0.8, 0.78, 0.74), colour)
-        return colour, emitted
+        visible = fade(0.045, footprint)[:, None]
+        return books * visible + 0.18 * (1 - visible)

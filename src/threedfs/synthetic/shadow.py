@@ -56,8 +56,8 @@ class CastLight:
     def on_table(self, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return visible share of the lamp and open share of the surroundings (N,) at points (N, 3) of the table."""
         grid = (points[:, :2] - self._low) / self._spacing
-        inside = np.all((grid >= 0) & (grid < np.array(self._map.shape[1:]) - 1), axis=1)
-        on = np.flatnonzero(inside & (points[:, 2] > -1e-6))
+        inside = [(grid[:, d] >= 0) & (grid[:, d] < self._map.shape[1 + d] - 1) for d in range(2)]
+        on = np.flatnonzero(inside[0] & inside[1] & (points[:, 2] > -1e-6))
         cell = grid[on].astype(int)
         a, b = (grid[on] - cell).T
         i, j = cell.T

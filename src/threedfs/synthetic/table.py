@@ -48,7 +48,7 @@ class Table:
         for sheet in self.sheets:
             local = sheet.local(points)
             # The edge of a sheet is blended over a pixel.
-            inside = np.min(np.asarray(sheet.half) - np.abs(local[:, :2]), axis=1)
+            inside = np.minimum(sheet.half[0] - np.abs(local[:, 0]), sheet.half[1] - np.abs(local[:, 1]))
             share = np.clip(inside / np.maximum(footprint, 1e-12) + 0.5, 0, 1)
             on = np.flatnonzero((share > 0) & (points[:, 2] > -1e-6))
             own = sheet.material.texture(local[on], footprint[on])

@@ -13,7 +13,7 @@ import numpy as np
 _LUMA = np.array([0.299, 0.587, 0.114])
 
 
-def write_video(path: Path, frames: Iterable[np.ndarray], rate: int, quality: int) -> None:
+def write_video(path: Path, frames: Iterable[np.ndarray], rate: int | Fraction, quality: int) -> None:
     """Encode RGB frames (H, W, 3) uint8, of even size, as mp4.
 
     Parameters
@@ -21,7 +21,7 @@ def write_video(path: Path, frames: Iterable[np.ndarray], rate: int, quality: in
     path : Path
     frames : iterable
         Consumed one at a time.
-    rate : int
+    rate : int or Fraction
         Frames per second.
     quality : int
         Constant rate factor of x264: 18 is nearly lossless, 28 is coarse.

@@ -1,0 +1,59 @@
+"""Sequences whose images the run itself renders, with their truth."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from threedfs.errors import UserError
+from threedfs.synthetic.takes import take_module
+
+RENDERED_KEYS = {"rendered": {"type": ["string", "null"]}, "true_cameras": {"type": "boolean"}}
+"""JSON schema of the keys of a rendered sequence."""
+
+_BROUGHT = ("source", "cameras", "intrinsics", "calibration", "truth")
+_TRUTH = {"masks": "masks", "cameras": "cameras.json", "mesh": "mesh.ply", "depth": "depth"}
+_DEPTH_SCALE = 10000.0  # levels of a true depth image in a metre
+
+
+def bring_render(name: str, entry: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return a sequence's entry of the configuration, that of a rendered one with the results of the stage `render`.
+
+    Parameters
+    ----------
+    name : str
+        Of the sequence.
+    entry : mapping
+
+    Raises
+    ------
+    UserError
+        If it is not clear where the images come from, or there is no such take.
+    """
+    where, take = f"configuration, sequences.{name}", entry.get("rendered")
+    if take is None:
+        if entry.get("source") is None:
+            raise UserError(
+                f"{where}: expected the key source (a video or photos) or rendered (a take), found neither; "
+                "see config/README.md."
+            )
+        if entry.get("true_cameras"):
+            raise UserError(f"{where}.true_cameras: only a rendered sequence has them; give its cameras instead.")
+        return entry
+    beside = [key for key in _BROUGHT if entry.get(key) is not None]
+    if beside:
+        raise UserError(
+            f"{where}: expected no {', '.join(beside)} beside rendered; a rendered sequence brings its own images, "
+            "cameras and truth."
+        )
+    try:
+        take_module(take)
+    except UserError as fault:
+        raise UserError(f"{where}.{fault}") from fault
+    folder = f"results/{name}/00_render"
+    return {
+        **entry,
+        "source": f"{folder}/video.mp4",
+        "cameras": f"{folder}/cameras.json" if entry.get("true_cameras") else None,
+        "truth": {key: f"{folder}/{file}" for key, file in _TRUTH.items()} | {"depth_scale": _DEPTH_SCALE},
+    }
