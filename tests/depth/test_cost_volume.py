@@ -2,6 +2,7 @@
 
 import cv2
 import numpy as np
+import pytest
 import scenes
 
 from threedfs.depth.candidates import space_candidates
@@ -9,7 +10,7 @@ from threedfs.depth.cost_volume import choose_patch_radius, compute_cost_volume,
 from threedfs.depth.zncc import MISSING, accumulate_cost, describe_patches, prepare_grey
 from threedfs.geometry.projection import backproject, project
 from threedfs.geometry.rigid import make_transform
-from threedfs.types import View
+from threedfs.types import Keyframe, View
 
 
 def zncc_cost(reference, warped, radius, floor=0.0):
@@ -153,4 +154,6 @@ def test_patches_grow_with_the_gaps_between_views():
     for degrees, radius in ((5, 1), (21, 2), (60, 4)):
         angle = np.radians(degrees)
         turned = make_transform(np.eye(3), [-np.sin(angle), 0, np.cos(angle) - 1])
-        assert choose_patch_radius(reference, [View("turned", scenes.CAMERA, turned)], 1.0) == radius
+        keyframe = Keyframe(reference, (View("turned", scenes.CAMERA, turned),), 1.0, 1.0)
+        assert keyframe.neighbour_angle == pytest.approx(degrees)
+        assert choose_patch_radius(keyframe.neighbour_angle) == radius

@@ -58,7 +58,7 @@ def run(
     confidence *= texture_confidence(patches.variance, params.texture_half_variance)
     confidence[~patches.complete] = 0
     inverse_depth, variance = measured.inverse_depth.astype(np.float64), measured.variance.astype(np.float64)
-    if stereo is not None:
+    if entry.neighbour_angle >= params.stereo_angle:
         matched = read_stereo(stereo).inverse_depth.astype(np.float64)
         inverse_depth, variance = merge_measurements(inverse_depth, variance, matched, params.stereo_deviation)
         confidence[np.isnan(matched)] *= params.unmatched_trust

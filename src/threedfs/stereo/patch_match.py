@@ -26,7 +26,7 @@ class PatchMatch:
 
     Attributes
     ----------
-    inverse_depth : (H, W) float64, 1 / scene unit, NaN where no patch fits on the valid image
+    inverse_depth : (H, W) float64, 1 / scene unit, NaN where nothing is known
     slope : (H, W, 2) float64, its change per pixel along columns and rows
     cost : (H, W) float64, (1 - NCC) / 2 averaged over the views that match best; 1 where nothing is known
     """
@@ -140,7 +140,7 @@ def match_patches(
                 min(rule.best_views, len(neighbours)),
             )
         note(f"level {level}: {100 * np.mean(cost < 0.1):.0f} % of the patches match")
-    planes[cost == np.inf] = np.nan
+    planes[cost >= 1] = np.nan
     return PatchMatch(planes[..., 0], planes[..., 1:], np.minimum(cost, 1.0))
 
 

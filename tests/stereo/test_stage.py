@@ -1,0 +1,87 @@
+"""Contract tests of the stages stereo and stereo_check on a slanted plane seen by five cameras."""
+
+import numpy as np
+import pytest
+import scenes
+
+from threedfs.errors import UserError
+from threedfs.io.depth_maps import Semidense, read_stereo, write_semidense, write_stereo
+from threedfs.io.frames import Frame, write_frames
+from threedfs.io.keyframes import write_keyframes
+from threedfs.job import Job
+from threedfs.params.stereo import StereoParams
+from threedfs.params.stereo_check import StereoCheckParams
+from threedfs.progress import Progress
+from threedfs.stages import stereo, stereo_check
+from threedfs.types import Keyframe
+
+JOB = Job(Progress("test"), {"provenance": "test"})
+
+
+@pytest.fixture(scope="module")
+def matched(tmp_path_factory):
+    """A folder with the stereo maps of all five views, and their keyframes."""
+    folder = tmp_path_factory.mktemp("stereo")
+    views = scenes.views()
+    frames = [Frame(view.name, rank, 0.0, 1.0, scenes.render(view)) for rank, view in enumerate(views)]
+    write_frames(folder / "frames.zarr.zip", frames, JOB.header, ordered=True, source_shape=scenes.CAMERA.shape)
+    entries = [Keyframe(view, tuple(other for other in views if other is not view), 0.4, 2.5) for view in views]
+    write_keyframes(folder / "keyframes.json", entries, JOB.header)
+    nothing = np.full(scenes.CAMERA.shape, np.nan, np.float32)
+    write_semidense(folder / "semidense.zarr.zip", Semidense(nothing, nothing), JOB.header)
+    for view in views:
+        stereo.run(
+            undistorted=folder / "frames.zarr.zip",
+            keyframes=folder / "keyframes.json",
+            semidense=folder / "semidense.zarr.zip",
+            stereo=folder / "stereo" / f"{view.name}.zarr.zip",
+            keyframe=view.name,
+            params=StereoParams(levels=2, views=4),
+            job=JOB,
+        )
+    return folder
+
+
+def check(folder, **changes):
+    stereo_check.run(
+        keyframes=folder / "keyframes.json",
+        stereo=sorted((folder / "stereo").iterdir()),
+        checked=folder / "checked.zarr.zip",
+        keyframe="0",
+        params=StereoCheckParams(**changes),
+        job=JOB,
+    )
+    return read_stereo(folder / "checked.zarr.zip")
+
+
+def test_confirmed_matches_are_kept_and_true(matched):
+    """Exact: what the other views confirm lies on the plane."""
+    kept = check(matched, min_agreeing=2)
+    known = np.isfinite(kept.inverse_depth)
+    truth = 1 / scenes.plane_depth(scenes.views()[0])
+    assert known.mean() > 0.6
+    assert np.quantile(np.abs(kept.inverse_depth / truth - 1)[known], 0.95) < 0.02
+
+
+def test_a_match_that_no_other_view_confirms_is_dropped(matched):
+    """Property: a map at a wrong depth, however good its cost, loses all its pixels."""
+    path = matched / "stereo" / "0.zarr.zip"
+    own = read_stereo(path)
+    try:
+        write_stereo(path, type(own)(own.inverse_depth * 1.2, own.slope, own.cost), JOB.header)
+        assert np.isfinite(check(matched).inverse_depth).mean() < 0.02
+        assert np.isfinite(check(matched, min_agreeing=0).inverse_depth).mean() > 0.6
+    finally:
+        write_stereo(path, own, JOB.header)
+
+
+def test_costly_matches_are_dropped(matched):
+    """Exact: no pixel above the cost is kept."""
+    kept = check(matched, max_cost=0.01)
+    assert (kept.cost[np.isfinite(kept.inverse_depth)] <= 0.01).all()
+
+
+def test_more_deciding_views_than_views_are_refused():
+    """Rejection: three views cannot decide among two."""
+    with pytest.raises(UserError, match="best_views <= views"):
+        StereoParams(views=2, best_views=3)
