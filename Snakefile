@@ -25,7 +25,7 @@ rule all:
     input:
         expand(
             "results/{sequence}/11_object/{method}/{artifact}",
-            sequence=SEQUENCES,
+            sequence=OBJECTS,
             method=config["methods"],
             artifact=["mesh.ply", "masks"],
         ),

@@ -19,7 +19,7 @@ BIN = Path(sys.executable).parent
 SIGNATURES = {
     "calibrate": ("boards", "calibration", ""),
     "frames": ("source masks", "frames", ""),
-    "poses": ("frames cameras calibration", "poses points", ""),
+    "poses": ("frames cameras calibration", "poses points", "intrinsics"),
     "undistort": ("frames poses", "undistorted", ""),
     "keyframes": ("undistorted poses points masks", "keyframes", ""),
     "semidense": ("undistorted keyframes poses points", "semidense", "keyframe"),
@@ -33,7 +33,7 @@ SIGNATURES = {
     "evaluate": (
         "poses keyframes mesh masks depth frames masks_truth cameras_truth mesh_truth depth_truth",
         "metrics",
-        "dataset sequence method",
+        "dataset sequence method intrinsics depth_scale",
     ),
     "collect": ("tables", "metrics", ""),
 }

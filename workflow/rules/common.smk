@@ -4,21 +4,18 @@ import sys
 import time
 
 from threedfs.errors import UserError
-from threedfs.params.configuration import (
-    check_configuration,
-    configuration_schema,
-    list_sequences,
-)
+from threedfs.params.configuration import load_sequences
 from threedfs.store.code import digest_code
 from threedfs.store.digests import InputDigests
 from threedfs.store.run_lock import take_over
 
+NOTES = sys.stderr if workflow.is_main_process else None  # jobs read the rules again
 try:
-    check_configuration(config, configuration_schema())
-    SEQUENCES = list_sequences(config, Path(workflow.basedir))
+    SEQUENCES = load_sequences(config, Path(workflow.basedir), NOTES)
 except UserError as fault:
     sys.exit(f"threedfs: {fault}")
 
+OBJECTS = [name for name, entry in SEQUENCES.items() if entry["object"]]
 RUN_LOCK = take_over(Path(".snakemake")) if workflow.is_main_process else None
 STARTED = time.time()
 STORE_DIGESTS = InputDigests(Path(config["store"]) / "digests")

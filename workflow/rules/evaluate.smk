@@ -32,6 +32,8 @@ rule evaluate:
         labels=lambda wildcards: {
             "dataset": config["dataset"],
             "sequence": wildcards.sequence,
+            "intrinsics": SEQUENCES[wildcards.sequence]["intrinsics"],
+            "depth_scale": SEQUENCES[wildcards.sequence]["depth_scale"],
         },
     message:
         "Measure {wildcards.sequence} by {wildcards.method}."
@@ -43,7 +45,7 @@ rule collect:
     input:
         tables=expand(
             "results/{sequence}/12_evaluate/{method}/metrics.csv",
-            sequence=SEQUENCES,
+            sequence=OBJECTS,
             method=config["methods"],
         ),
     output:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 import jsonschema
 
@@ -15,12 +15,17 @@ from threedfs.params.schema import declared_stages, make_params, stage_schema
 
 METHODS = ("fused_sdf",)
 SEQUENCE_NAME = r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$"
+SEQUENCE_FILES = ("source", "cameras", "calibration", "truth_masks", "truth_cameras", "truth_mesh", "truth_depth")
+"""What a sequence's entry names: files and folders that must be there."""
+
 _PATH = {"type": ["string", "null"]}
+_DEPTH_SCALE = 1000.0
 
 
 def configuration_schema() -> dict[str, Any]:
     """Return the JSON schema of the configuration."""
     truth = {name: _PATH for name in ("masks", "cameras", "mesh", "depth")}
+    truth["depth_scale"] = {"type": "number", "exclusiveMinimum": 0}
     sequence = {
         "type": "object",
         "additionalProperties": False,
@@ -28,7 +33,9 @@ def configuration_schema() -> dict[str, Any]:
         "properties": {
             "source": {"type": "string"},
             "cameras": _PATH,
+            "intrinsics": {"type": ["array", "null"], "items": {"type": "number"}, "minItems": 4, "maxItems": 4},
             "calibration": _PATH,
+            "object": {"type": "boolean"},
             "truth": {"type": ["object", "null"], "additionalProperties": False, "properties": truth},
         },
     }
@@ -40,6 +47,7 @@ def configuration_schema() -> dict[str, Any]:
             "additionalProperties": sequence,
             "propertyNames": {"pattern": SEQUENCE_NAME},
         },
+        "skip_absent": {"type": "boolean"},
         "methods": {"type": "array", "minItems": 1, "uniqueItems": True, "items": {"enum": [*METHODS]}},
         "seed": {"type": "integer", "minimum": 0},
         "store": {"type": "string", "minLength": 1},
@@ -69,21 +77,45 @@ def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) ->
         make_params(declared, config[stage])
 
 
-def list_sequences(config: Mapping[str, Any], home: Path) -> dict[str, dict[str, str | None]]:
+def load_sequences(config: Mapping[str, Any], home: Path, notes: TextIO | None = None) -> dict[str, dict[str, Any]]:
+    """Check the configuration and return its sequences, as `check_configuration` and `list_sequences` do.
+
+    Parameters
+    ----------
+    config, home
+        As `list_sequences` takes them.
+    notes : text stream, optional
+        Gets a line for each sequence that is skipped.
+    """
+    check_configuration(config, configuration_schema())
+    return list_sequences(config, home, lambda sentence: notes and notes.write(f"threedfs: {sentence}\n"))
+
+
+def list_sequences(
+    config: Mapping[str, Any], home: Path, note: Callable[[str], Any] = lambda sentence: None
+) -> dict[str, dict[str, Any]]:
     """Return the sequences to work on, by name.
 
     Without `video` or `sequences` that is the sample which ships with the project. Relative paths count from the
     working directory, the sample's from `home`.
 
+    Parameters
+    ----------
+    config : mapping
+    home : Path
+        Folder of the project.
+    note : callable
+        Takes a sentence for each sequence that is skipped because its source is absent (`skip_absent`).
+
     Returns
     -------
     dict of str to dict
-        source, cameras, calibration, truth_masks, truth_cameras, truth_mesh, truth_depth: paths or None.
+        `SEQUENCE_FILES`: paths or None; intrinsics: list of float or None; object: bool; depth_scale: float.
 
     Raises
     ------
     UserError
-        If a name cannot name a folder, or a path leads nowhere.
+        If a name cannot name a folder, a path leads nowhere, or no sequence is left.
     """
     given = dict(config["sequences"] or {})
     if config["video"]:
@@ -94,15 +126,30 @@ def list_sequences(config: Mapping[str, Any], home: Path) -> dict[str, dict[str,
             raise UserError(_explain_name(name, f"the file {config['video']}; rename it, or list it under sequences"))
         given = {name: {"source": config["video"]}}
     sequences = {name: _flatten(entry) for name, entry in given.items()} or {"sample": _sample(home)}
+    if config["skip_absent"]:
+        sequences = _skip_absent(sequences, note)
     for name, entry in sequences.items():
-        for key, path in entry.items():
-            if path is not None and not os.path.exists(path):
+        for key in SEQUENCE_FILES:
+            if entry[key] is not None and not os.path.exists(entry[key]):
                 where = f"sequences.{name}.{key.replace('truth_', 'truth.')}"
-                raise UserError(f"{where}: expected a file or folder, found no {path} in {os.getcwd()}.")
+                raise UserError(f"{where}: expected a file or folder, found no {entry[key]} in {os.getcwd()}.")
     return sequences
 
 
-def _sample(home: Path) -> dict[str, str | None]:
+def _skip_absent(sequences: Mapping[str, dict[str, Any]], note: Callable[[str], Any]) -> dict[str, dict[str, Any]]:
+    present = {name: entry for name, entry in sequences.items() if os.path.exists(entry["source"])}
+    if not present:
+        raise UserError(
+            f"sequences: expected at least one whose source is there, found none of the {len(sequences)} in "
+            f"{os.getcwd()}, e.g. no {next(iter(sequences.values()))['source']}; get the data, or correct the paths."
+        )
+    for name in sequences:
+        if name not in present:
+            note(f"sequence {name} is skipped: its source {sequences[name]['source']} is not in {os.getcwd()}.")
+    return present
+
+
+def _sample(home: Path) -> dict[str, Any]:
     folder = home / "resources" / "sample"
     if folder.is_relative_to(os.getcwd()):
         folder = folder.relative_to(os.getcwd())
@@ -115,10 +162,13 @@ def _sample(home: Path) -> dict[str, str | None]:
     )
 
 
-def _flatten(entry: Mapping[str, Any]) -> dict[str, str | None]:
-    truth = entry.get("truth") or {}
-    given = {key: entry.get(key) for key in ("source", "cameras", "calibration")}
-    return given | {f"truth_{key}": truth.get(key) for key in ("masks", "cameras", "mesh", "depth")}
+def _flatten(entry: Mapping[str, Any]) -> dict[str, Any]:
+    truth = {f"truth_{key}": value for key, value in (entry.get("truth") or {}).items()}
+    return {key: {**entry, **truth}.get(key) for key in SEQUENCE_FILES} | {
+        "intrinsics": entry.get("intrinsics"),
+        "object": entry.get("object", True),
+        "depth_scale": truth.get("truth_depth_scale", _DEPTH_SCALE),
+    }
 
 
 def _explain(fault: jsonschema.ValidationError) -> str:

@@ -28,9 +28,14 @@ video: null
 #   mug:
 #     source: videos/mug.mp4        # a video or a folder of photos
 #     cameras: null                 # given cameras, instead of structure from motion
+#     intrinsics: null              # [fx, fy, cx, cy], for given cameras that are poses alone
 #     calibration: null             # photos or a video of a checkerboard
-#     truth: {masks: null, cameras: null, mesh: null, depth: null}
+#     object: true                  # false: no object is looked for, only the depth experiment runs
+#     truth: {masks: null, cameras: null, mesh: null, depth: null, depth_scale: 1000}
 sequences: {}
+
+# Go on without the sequences whose source is absent; they are named at the start.
+skip_absent: false
 
 # How the object is cut out of the fused volume.
 methods: [fused_sdf]
@@ -52,6 +57,7 @@ _INTRODUCTION = """\
 What the file names takes the place of the default, everything else stays. `presets/paper.yaml` has the constants of
 the paper; a file of sequences and a preset can be given together: `--configfile config/presets/paper.yaml my.yaml`.
 One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`.
+`datasets/` has files of sequences: the data sets that the project is measured on, and the layouts of published ones.
 
 An unknown key, a wrong type or a value out of range stops the run before it starts, with a sentence.
 
@@ -71,13 +77,21 @@ _KEYS = {
     "video": "one video or folder of photos; the sequence gets the file's name",
     "sequences.<name>.source": "a video (mp4, mov) or a folder of photos",
     "sequences.<name>.cameras": "given cameras: a COLMAP model folder, `transforms.json`, `cameras.json` with "
-    "`cam_to_world`, or a folder of CONTOUR projection matrices; null: structure from motion",
+    "`cam_to_world`, a folder of CONTOUR projection matrices or of `NAME.pose.txt` (7-Scenes, 3DMatch), or a pose file "
+    "of RGB-D Scenes v2; null: structure from motion",
+    "sequences.<name>.intrinsics": "[fx, fy, cx, cy] in pixels of the source, the first pixel's centre at (0, 0), for "
+    "given and true cameras that are poses alone: RGB-D Scenes v2, and `NAME.pose.txt` without `camera-intrinsics.txt`",
     "sequences.<name>.calibration": "photos or a video of a checkerboard; null: the camera calibrates itself",
+    "sequences.<name>.object": "false: no object is looked for, the sequence only takes part in the depth experiment "
+    "(default true)",
     "sequences.<name>.truth.masks": "folder of masks named like the frames (white: object), to measure against; "
     "their frames become keyframes",
     "sequences.<name>.truth.cameras": "reference cameras, to measure against",
     "sequences.<name>.truth.mesh": "reference mesh, in the frame of the reference cameras",
-    "sequences.<name>.truth.depth": "folder of reference depth maps",
+    "sequences.<name>.truth.depth": "folder of true depth images, `NAME.depth.png` or `NNNNN-depth.png`",
+    "sequences.<name>.truth.depth_scale": "their units per unit of the true cameras (default 1000: millimetres and "
+    "metres)",
+    "skip_absent": "go on without the sequences whose source is absent; they are named at the start",
     "methods": "how the object is cut out: `fused_sdf`",
     "seed": "of every random choice",
     "store": "folder of finished work, and of the kernels compiled for it",
