@@ -17,6 +17,7 @@ include: "workflow/rules/edges.smk"
 include: "workflow/rules/depth.smk"
 include: "workflow/rules/fusion.smk"
 include: "workflow/rules/object.smk"
+include: "workflow/rules/depth_experiment.smk"
 include: "workflow/rules/evaluate.smk"
 
 

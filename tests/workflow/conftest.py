@@ -35,7 +35,13 @@ SIGNATURES = {
         "metrics",
         "dataset sequence method intrinsics depth_scale",
     ),
-    "collect": ("tables", "metrics", ""),
+    "depth_trial": (
+        "undistorted keyframes edges poses masks_truth cameras_truth mesh_truth depth_truth",
+        "trial",
+        "keyframe depth_settings depth_scale intrinsics",
+    ),
+    "depth_experiment": ("trials", "metrics", "dataset sequence"),
+    "collect": ("tables depth_tables", "metrics", ""),
 }
 """Inputs, outputs and wildcards of each stage: the contract between rules and stages."""
 

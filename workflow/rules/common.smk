@@ -15,7 +15,8 @@ try:
 except UserError as fault:
     sys.exit(f"threedfs: {fault}")
 
-OBJECTS = [name for name, entry in SEQUENCES.items() if entry["object"]]
+OBJECTS = [name for name in SEQUENCES if SEQUENCES[name]["object"]]
+TRIED = [name for name in SEQUENCES if SEQUENCES[name]["depth_experiment"]]
 RUN_LOCK = take_over(Path(".snakemake")) if workflow.is_main_process else None
 STARTED = time.time()
 STORE_DIGESTS = InputDigests(Path(config["store"]) / "digests")
@@ -63,14 +64,15 @@ def fingerprint_of(*keys):
     return digest
 
 
-def per_keyframe(pattern):
-    """Return an input function: one file per keyframe, in the order of the frames."""
+def per_keyframe(pattern, choose=lambda names, sequence: names):
+    """Return an input function: one file per (chosen) keyframe, in their order."""
 
     def find(wildcards):
         keyframes = checkpoints.keyframes.get(
             sequence=wildcards.sequence
         ).output.keyframes
         names = json.loads(Path(keyframes).read_text())["order"]
+        names = choose(names, SEQUENCES[wildcards.sequence])
         return expand(pattern, keyframe=names, allow_missing=True)
 
     return find

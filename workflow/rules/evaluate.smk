@@ -48,6 +48,9 @@ rule collect:
             sequence=OBJECTS,
             method=config["methods"],
         ),
+        depth_tables=expand(
+            "results/{sequence}/12_depth_experiment/metrics.csv", sequence=TRIED
+        ),
     output:
         metrics="results/metrics.csv",
     log:

@@ -56,3 +56,8 @@ def choose_spread(names: Sequence[str], count: int) -> list[str]:
         return [names[len(names) // 2]]
     # Halves are rounded up, so that the choice does not depend on how a language rounds.
     return [names[(2 * number * (len(names) - 1) + count - 1) // (2 * (count - 1))] for number in range(count)]
+
+
+def choose_with_depth(names: Iterable[str], folder: Path, count: int) -> list[str]:
+    """Choose `count` frames spread evenly over those that have a true depth image; fewer if there are not so many."""
+    return choose_spread(list(match_depth_images(folder, names)), count)

@@ -80,15 +80,25 @@ def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) ->
 def load_sequences(config: Mapping[str, Any], home: Path, notes: TextIO | None = None) -> dict[str, dict[str, Any]]:
     """Check the configuration and return its sequences, as `check_configuration` and `list_sequences` do.
 
+    Each sequence says too whether it takes part in the depth experiment.
+
     Parameters
     ----------
     config, home
         As `list_sequences` takes them.
     notes : text stream, optional
         Gets a line for each sequence that is skipped.
+
+    Raises
+    ------
+    UserError
+        If also the depth experiment names a sequence that cannot take part, or nothing is to be done with one.
     """
     check_configuration(config, configuration_schema())
-    return list_sequences(config, home, lambda sentence: notes and notes.write(f"threedfs: {sentence}\n"))
+    sequences = list_sequences(config, home, lambda sentence: notes and notes.write(f"threedfs: {sentence}\n"))
+    tried = config["depth_experiment"]["sequences"]
+    _check_tried([name for name in tried if name not in (config["sequences"] or {})], sequences, tried)
+    return {name: {**entry, "depth_experiment": name in tried} for name, entry in sequences.items()}
 
 
 def list_sequences(
@@ -134,6 +144,25 @@ def list_sequences(
                 where = f"sequences.{name}.{key.replace('truth_', 'truth.')}"
                 raise UserError(f"{where}: expected a file or folder, found no {entry[key]} in {os.getcwd()}.")
     return sequences
+
+
+def _check_tried(unknown: list[str], sequences: Mapping[str, dict[str, Any]], tried: list[str]) -> None:
+    if unknown:
+        raise UserError(
+            f"depth_experiment.sequences: expected names of sequences, got {', '.join(unknown)}, which is none of them."
+        )
+    for name, entry in sequences.items():
+        missing = [key for key in ("cameras", "truth_cameras", "truth_depth") if entry[key] is None]
+        if name in tried and missing:
+            raise UserError(
+                f"depth_experiment.sequences: expected given cameras and true depth of {name}, found no "
+                f"{' and no '.join(missing).replace('truth_', 'truth.')}; give them under sequences.{name}."
+            )
+        if name not in tried and not entry["object"]:
+            raise UserError(
+                f"sequences.{name}: expected its name in depth_experiment.sequences, as object: false leaves nothing "
+                "else to do, found it missing; add it there."
+            )
 
 
 def _skip_absent(sequences: Mapping[str, dict[str, Any]], note: Callable[[str], Any]) -> dict[str, dict[str, Any]]:

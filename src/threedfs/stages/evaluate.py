@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -40,7 +40,7 @@ from threedfs.io.truth_files import find_depth_images
 from threedfs.job import Job
 from threedfs.object.silhouettes import draw_source_silhouette
 from threedfs.params.evaluate import EvaluateParams
-from threedfs.poses.given import find_cameras
+from threedfs.poses.given import find_cameras, state_size
 from threedfs.types import Keyframe, Mesh, View
 
 Filmed = tuple[View, tuple[float, float]]
@@ -140,11 +140,8 @@ def _frame_name(given: GivenCamera, store: FrameStore) -> str:
 
 
 def _film(given: GivenCamera, store: FrameStore) -> Filmed:
-    lens = given.lens
-    camera = lens.camera
-    if not camera.width:
-        camera = replace(camera, width=store.source_shape[1], height=store.source_shape[0])
-    return View(given.name, camera, given.cam_from_world), (lens.k1, lens.k2)
+    lens = state_size(given.lens, store.source_shape)
+    return View(given.name, lens.camera, given.cam_from_world), (lens.k1, lens.k2)
 
 
 def _score_poses(truth: _Truth, solved: Poses) -> list[Figure]:
