@@ -9,6 +9,7 @@ configfile: Path(workflow.basedir) / "config" / "config.yaml"
 
 
 include: "workflow/rules/common.smk"
+include: "workflow/rules/inputs.smk"
 include: "workflow/rules/run.smk"
 include: "workflow/rules/render.smk"
 include: "workflow/rules/frames.smk"
@@ -20,6 +21,7 @@ include: "workflow/rules/stereo.smk"
 include: "workflow/rules/depth.smk"
 include: "workflow/rules/fusion.smk"
 include: "workflow/rules/object.smk"
+include: "workflow/rules/depth_experiment.smk"
 include: "workflow/rules/evaluate.smk"
 
 
@@ -28,7 +30,7 @@ rule all:
     input:
         expand(
             "results/{sequence}/11_object/{method}/{artifact}",
-            sequence=SEQUENCES,
+            sequence=OBJECTS,
             method=config["methods"],
             artifact=["mesh.ply", "masks"],
         ),

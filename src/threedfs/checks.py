@@ -36,8 +36,16 @@ def check_shape(array: np.ndarray, expected: tuple[int | None, ...], what: str) 
     return array
 
 
-def check_transform(matrix: np.ndarray, what: str) -> np.ndarray:
+def check_transform(matrix: np.ndarray, what: str, tolerance: float = 1e-5) -> np.ndarray:
     """Return `matrix` as float64 if it is a rigid 4x4 transform.
+
+    Parameters
+    ----------
+    matrix : ndarray
+    what : str
+        Name of the matrix in the message.
+    tolerance : float
+        How far products of the rotation's rows may be from those of unit vectors at right angles.
 
     Raises
     ------
@@ -50,7 +58,7 @@ def check_transform(matrix: np.ndarray, what: str) -> np.ndarray:
     if not np.allclose(matrix[3], (0, 0, 0, 1), atol=1e-9):
         raise UserError(f"{what}: expected the last row (0, 0, 0, 1), got {matrix[3]}; is it transposed?")
     rotation = matrix[:3, :3]
-    if not np.allclose(rotation @ rotation.T, np.eye(3), atol=1e-5) or np.linalg.det(rotation) < 0:
+    if not np.allclose(rotation @ rotation.T, np.eye(3), atol=tolerance) or np.linalg.det(rotation) < 0:
         raise UserError(
             f"{what}: expected a rotation in the upper left 3x3 block, got determinant "
             f"{np.linalg.det(rotation):.4g}; it probably carries a scale or a reflection."

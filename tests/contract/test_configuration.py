@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import io
 from dataclasses import fields
 from pathlib import Path
 
@@ -15,11 +16,10 @@ from threedfs.params.configuration import (
     METHODS,
     check_configuration,
     configuration_schema,
-    list_sequences,
-    set_aside_missing,
 )
 from threedfs.params.document import FILES
 from threedfs.params.schema import STAGES, declared_stages, default_settings, make_params
+from threedfs.params.sequences import list_sequences, load_sequences, set_aside_missing
 
 ROOT = Path(__file__).resolve().parents[2]
 STAGE_PARAMETERS = [(s, f.name) for s, declared in declared_stages().items() for f in fields(declared)]
@@ -44,7 +44,17 @@ def test_generated_file_is_in_step_with_the_parameters(name):
 
 def test_every_module_of_parameters_is_a_stage():
     modules = {path.stem for path in (ROOT / "src/threedfs/params").glob("*.py")}
-    shared = {"__init__", "field", "schema", "configuration", "document", "fusion", "component", "rendered"}
+    shared = {
+        "__init__",
+        "field",
+        "schema",
+        "configuration",
+        "document",
+        "fusion",
+        "component",
+        "rendered",
+        "sequences",
+    }
     assert modules - shared == set(declared_stages()) <= set(STAGES)
 
 
@@ -164,3 +174,41 @@ def test_values_that_do_not_fit_each_other_are_refused_when_read(defaults, case)
 
 def test_lists_that_are_empty_by_default_may_be_empty(defaults):
     check_configuration(merged(defaults, {"evaluate": {"cylinder_sequences": []}}), configuration_schema())
+
+
+def test_absent_sequences_are_skipped_with_a_sentence_only_if_asked_for(defaults, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("mug.mp4").touch()
+    config = {**defaults, "sequences": {"mug": {"source": "mug.mp4"}, "cup": {"source": "cup.mp4"}}}
+    sequences, missing = load_sequences(config, ROOT)
+    assert list(sequences) == ["mug", "cup"] and list(missing) == ["cup"]
+    assert missing["cup"].startswith("sequences.cup.source: expected a file or folder, found no cup.mp4")
+    said = io.StringIO()
+    sequences, missing = load_sequences({**config, "skip_absent": True}, ROOT, said)
+    assert list(sequences) == ["mug"] and not missing
+    (line,) = said.getvalue().splitlines()
+    assert line.startswith("threedfs: sequence cup is skipped: its source cup.mp4 is not in ")
+
+
+def test_nothing_left_of_a_data_set_is_an_error(defaults, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    config = {**defaults, "skip_absent": True, "sequences": {"cup": {"source": "cup.mp4"}}}
+    with pytest.raises(UserError, match=r"expected at least one whose source is there, found none of the 1 "):
+        load_sequences(config, ROOT)
+
+
+def test_absent_truth_of_a_present_sequence_is_missing_all_the_same(defaults, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("mug.mp4").touch()
+    entry = {"source": "mug.mp4", "truth": {"masks": "masks"}}
+    _, missing = load_sequences({**defaults, "skip_absent": True, "sequences": {"mug": entry}}, ROOT)
+    assert missing["mug"].startswith("sequences.mug.truth.masks: expected a file or folder, found no masks")
+
+
+def test_what_a_sequence_does_not_state_has_its_default(defaults, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("mug.mp4").touch()
+    bare, full = {"source": "mug.mp4"}, {"source": "mug.mp4", "intrinsics": [1, 2, 3, 4], "truth": {"depth_scale": 10}}
+    found, _ = load_sequences({**defaults, "sequences": {"bare": bare, "full": full}}, ROOT)
+    assert (found["bare"]["intrinsics"], found["bare"]["depth_scale"], found["bare"]["object"]) == (None, 1000.0, True)
+    assert (found["full"]["intrinsics"], found["full"]["depth_scale"]) == ([1, 2, 3, 4], 10)

@@ -48,7 +48,8 @@ class Run:
         params = changes.pop("params", EvaluateParams(surface_samples=2000))
         metrics = self.folder / "metrics.csv"
         job = Job(Progress("evaluate", self.log))
-        names = {"dataset": "box", "sequence": "ring", "method": "fused_sdf"}
+        names = {"dataset": "box", "sequence": "ring", "method": "fused_sdf", "intrinsics": None}
+        names["depth_scale"] = changes.pop("depth_scale", 1000.0)
         evaluate.run(**{**self.inputs, **changes}, metrics=metrics, **names, params=params, job=job)
         found = {}
         for metric in read_metrics(metrics):

@@ -9,7 +9,8 @@ from threedfs.errors import UserError
 from threedfs.evaluate.depth_error import DepthPairs, measure_depth, pair_depths, pool_pairs
 from threedfs.evaluate.rendering import MeshRenderer, filmed_pixels, image_points, sample_nearest
 from threedfs.geometry.distortion import distort
-from threedfs.io.truth import find_depth_images, read_depth_image
+from threedfs.io.truth import read_depth_image
+from threedfs.io.truth_files import find_depth_images
 from threedfs.types import Camera, Mesh
 
 CAMERA = Camera(64, 48, 60.0, 62.0, 31.2, 23.7)
@@ -98,20 +99,25 @@ def test_pairs_leave_out_the_border_and_what_is_unknown():
     assert pool_pairs([pairs, pairs]).missing == 2
 
 
-def test_depth_images_are_millimetres(tmp_path):
+def test_depth_images_are_of_the_scale_given(tmp_path):
     image = np.array([[0, 1500], [65535, 2]], np.uint16)
     cv2.imwrite(str(tmp_path / "frame-000008.depth.png"), image)
     files = find_depth_images(tmp_path, ["frame-000000.color", "frame-000008.color"])
     assert list(files) == ["frame-000008.color"]
-    np.testing.assert_array_equal(read_depth_image(files["frame-000008.color"]), [[np.nan, 1.5], [np.nan, 0.002]])
+    np.testing.assert_array_equal(
+        read_depth_image(files["frame-000008.color"], 1000.0), [[np.nan, 1.5], [np.nan, 0.002]]
+    )
+    np.testing.assert_array_equal(
+        read_depth_image(files["frame-000008.color"], 500.0), [[np.nan, 3.0], [np.nan, 0.004]]
+    )
 
 
 def test_refuses_depth_images_that_are_none(tmp_path):
     with pytest.raises(UserError, match="none belongs to a keyframe"):
         find_depth_images(tmp_path, ["000010"])
     cv2.imwrite(str(tmp_path / "a.depth.png"), np.zeros((2, 2, 3), np.uint8))
-    with pytest.raises(UserError, match="one channel of 16-bit millimetres, got uint8"):
-        read_depth_image(tmp_path / "a.depth.png")
+    with pytest.raises(UserError, match="one channel of 16-bit depths, got uint8"):
+        read_depth_image(tmp_path / "a.depth.png", 1000.0)
     (tmp_path / "b.depth.png").write_text("no image")
     with pytest.raises(UserError, match="none that can be decoded"):
-        read_depth_image(tmp_path / "b.depth.png")
+        read_depth_image(tmp_path / "b.depth.png", 1000.0)

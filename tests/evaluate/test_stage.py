@@ -78,16 +78,19 @@ def test_without_truth_there_is_still_a_table(finished):
     assert set(found) == {"frames_posed", "path_continuity", "path_turns", "reprojection_error", "mesh_closed"}
 
 
-def test_depth_images_in_metres(finished):
+@pytest.mark.parametrize("scale", [1000.0, 5000.0])
+def test_depth_images_in_metres(finished, scale):
     folder = finished.folder / "depth_truth"
     folder.mkdir()
     for path in finished.inputs["depth"]:
         # the scene is a quarter of the truth, and a working pixel two of the source
         depth = np.nan_to_num(read_depth_map(path).depth / 0.25).repeat(2, axis=0).repeat(2, axis=1)
-        cv2.imwrite(str(folder / path.name.replace(".zarr.zip", ".depth.png")), np.rint(1000 * depth).astype(np.uint16))
+        cv2.imwrite(
+            str(folder / path.name.replace(".zarr.zip", ".depth.png")), np.rint(scale * depth).astype(np.uint16)
+        )
     poses = json.loads(finished.inputs["poses"].read_text())
     finished.inputs["poses"].write_text(json.dumps({**poses, "distortion": [0.0, 0.0]}))
-    found = finished.score(depth_truth=folder)
+    found = finished.score(depth_truth=folder, depth_scale=scale)
     assert found["scene_depth_rmse"] < 5e-4  # half a millimetre of rounding
     assert found["scene_depth_covered"] == 100
 

@@ -52,6 +52,7 @@ def run(folder, pictures, *, threads=1, cameras=None, calibration=None, ordered=
         calibration=calibration,
         poses=folder / "poses.json",
         points=folder / "points.zarr.zip",
+        intrinsics=None,
         params=PosesParams(**settings),
         job=Job(Progress("poses", io.StringIO()), {"made": "in a test"}, threads),
     )

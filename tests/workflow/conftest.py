@@ -20,12 +20,14 @@ SIGNATURES = {
     "render": ("", "video cameras mesh masks depth", "take"),
     "calibrate": ("boards", "calibration", ""),
     "frames": ("source masks", "frames", ""),
-    "poses": ("frames cameras calibration", "poses points", ""),
+    "poses": ("frames cameras calibration", "poses points", "intrinsics"),
     "undistort": ("frames poses", "undistorted", ""),
     "keyframes": ("undistorted poses points masks", "keyframes", ""),
     "semidense": ("undistorted keyframes poses points", "semidense", "keyframe"),
     "edges": ("undistorted keyframes", "edges", "keyframe"),
-    "depth": ("undistorted keyframes semidense edges", "depth", "keyframe"),
+    "stereo": ("undistorted keyframes semidense", "stereo", "keyframe"),
+    "stereo_check": ("keyframes stereo", "checked", "keyframe"),
+    "depth": ("undistorted keyframes semidense edges stereo", "depth", "keyframe"),
     "consistency": ("keyframes depth", "consistency", ""),
     "fuse_scene": ("keyframes points depth consistency", "scene", ""),
     "locate": ("scene keyframes points semidense", "support", ""),
@@ -34,9 +36,15 @@ SIGNATURES = {
     "evaluate": (
         "poses keyframes mesh masks depth frames masks_truth cameras_truth mesh_truth depth_truth",
         "metrics",
-        "dataset sequence method",
+        "dataset sequence method intrinsics depth_scale",
     ),
-    "collect": ("tables", "metrics", ""),
+    "depth_trial": (
+        "undistorted keyframes edges poses masks_truth cameras_truth mesh_truth depth_truth",
+        "trial",
+        "keyframe depth_settings depth_scale intrinsics",
+    ),
+    "depth_experiment": ("trials", "metrics", "dataset sequence"),
+    "collect": ("tables depth_tables", "metrics", ""),
 }
 """Inputs, outputs and wildcards of each stage: the contract between rules and stages."""
 

@@ -24,9 +24,17 @@ def write(stage, inputs, outputs, names, params, job):
             path = path / "000001.png"
         elif path.name == "keyframes.json":
             entries = {"000001": {"near": 1}, "000002": {"near": 2}}
-            text = json.dumps({"schema": "threedfs/keyframes/1", "order": [*entries], "keyframes": entries, **given})
+            text = json.dumps(
+                {
+                    "schema": "threedfs/keyframes/1",
+                    "needs_stereo": False,
+                    "order": [*entries],
+                    "keyframes": entries,
+                    **given,
+                }
+            )
         elif path.name == "metrics.csv":
-            row = f"iou_mean,0.5,1,{names['dataset']},{names['sequence']},{names['method']},"
+            row = f"iou_mean,0.5,1,{names['dataset']},{names['sequence']},{names.get('method', 'depth/all')},"
             text = f"name,value,unit,dataset,sequence,method,keyframe\n{row}\n"
         path.write_text(text[:10])
         time.sleep(PAUSE)

@@ -47,6 +47,14 @@ def test_wrong_configuration_ends_with_one_sentence(project, case):
     assert not (project.folder / "results").exists()
 
 
+def test_skipped_sequences_are_named_once_at_the_start(project):
+    sequences = "sequences: {here: {source: config}, gone: {source: gone.mp4}}"
+    (project.folder / "some.yaml").write_text(f"skip_absent: true\n{sequences}\n")
+    output = project.run("--configfile", "some.yaml", "--", "results/here/01_frames/frames.zarr.zip")
+    assert output.count("threedfs: sequence gone is skipped: its source gone.mp4 is not in ") == 1
+    assert (project.folder / "results/here/01_frames/frames.zarr.zip").is_file()
+
+
 def test_missing_video_ends_with_one_sentence(project):
     output = project.run("--config", "video=nowhere.mp4", good=False)
     assert "threedfs: video: expected a video file or a folder of photos, found no nowhere.mp4" in output

@@ -1,22 +1,13 @@
 # 06: dense depth of a keyframe.
 
 
-def needed_stereo(wildcards):
-    """Return the checked stereo matches of a keyframe whose neighbours are far apart, or nothing."""
-    keyframes = checkpoints.keyframes.get(sequence=wildcards.sequence).output.keyframes
-    entry = json.loads(Path(keyframes).read_text())["keyframes"][wildcards.keyframe]
-    if entry["neighbour_angle"] < config["depth"]["stereo_angle"]:
-        return []
-    return "results/{sequence}/05_stereo/checked/{keyframe}.zarr.zip"
-
-
 rule depth:
     input:
         undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
         keyframes="results/{sequence}/03_keyframes/keyframes.json",
         semidense="results/{sequence}/04_semidense/{keyframe}.zarr.zip",
         edges="results/{sequence}/05_edges/{keyframe}.zarr.zip",
-        stereo=needed_stereo,
+        stereo=if_wide("results/{sequence}/05_stereo/checked/{keyframe}.zarr.zip"),
     output:
         depth="results/{sequence}/06_depth/{keyframe}.zarr.zip",
     log:

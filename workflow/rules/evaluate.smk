@@ -32,6 +32,8 @@ rule evaluate:
         labels=lambda wildcards: {
             "dataset": SEQUENCES[wildcards.sequence]["dataset"],
             "sequence": wildcards.sequence,
+            "intrinsics": SEQUENCES[wildcards.sequence]["intrinsics"],
+            "depth_scale": SEQUENCES[wildcards.sequence]["depth_scale"],
         },
     message:
         "Measure {wildcards.sequence} by {wildcards.method}."
@@ -43,8 +45,11 @@ rule collect:
     input:
         tables=expand(
             "results/{sequence}/12_evaluate/{method}/metrics.csv",
-            sequence=SEQUENCES,
+            sequence=OBJECTS,
             method=config["methods"],
+        ),
+        depth_tables=expand(
+            "results/{sequence}/12_depth_experiment/metrics.csv", sequence=TRIED
         ),
     output:
         metrics="results/metrics.csv",

@@ -27,6 +27,9 @@ rule poses:
         settings=settings_of("poses"),
         seed=config["seed"],
         folders=fingerprint_of("cameras"),
+        labels=lambda wildcards: {
+            "intrinsics": SEQUENCES[wildcards.sequence]["intrinsics"]
+        },
     message:
         "Find the cameras of {wildcards.sequence}."
     script:

@@ -1,11 +1,12 @@
-"""Cameras that a user gives, in any of four formats, told apart by what is in them.
+"""Cameras that a user gives, in any of six formats, told apart by what is in them.
 
 - a COLMAP model: a folder with cameras and images as .bin or .txt (or with sparse/0 or sparse in it);
 - transforms.json: entries with `transform_matrix`, camera to world with OpenGL axes (x right, y up, z backward);
 - cameras.json: entries with `cam_to_world`, OpenCV axes (x right, y down, z forward);
-- a folder of text files: the word CONTOUR, then a 3x4 matrix P with homogeneous pixel = P X.
+- a folder of text files: the word CONTOUR, then a 3x4 matrix P with homogeneous pixel = P X;
+- a folder of NAME.pose.txt (7-Scenes, 3DMatch) or a file NN.pose (RGB-D Scenes v2): see `rgbd_poses`.
 
-The first three put the centre of the first pixel at (0.5, 0.5), the last at (0, 0).
+The first three put the centre of the first pixel at (0.5, 0.5), the others at (0, 0).
 """
 
 from __future__ import annotations
@@ -23,9 +24,13 @@ from threedfs.errors import UserError
 from threedfs.geometry.lens import Lens
 from threedfs.geometry.projection_matrix import decompose_projection
 from threedfs.geometry.rigid import invert, make_transform
+from threedfs.io.rgbd_poses import POSE_SUFFIX, Intrinsics, find_intrinsics, read_pose_files, read_pose_lines
 from threedfs.types import Camera
 
-_FORMATS = "a COLMAP model folder, transforms.json, cameras.json or a folder of CONTOUR matrices"
+_FORMATS = (
+    "a COLMAP model folder, transforms.json, cameras.json, a folder of CONTOUR matrices or of NAME.pose.txt, or a "
+    "file of RGB-D Scenes v2 with the ending pose"
+)
 _OPENCV_FROM_OPENGL = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
@@ -51,24 +56,58 @@ class GivenCamera:
     cam_from_world: np.ndarray
 
 
-def read_given_cameras(path: Path) -> tuple[GivenCamera, ...]:
+def read_given_cameras(path: Path, intrinsics: Intrinsics | None = None) -> tuple[GivenCamera, ...]:
     """Read cameras in the order of their file (a folder: of the names).
+
+    Parameters
+    ----------
+    path : Path
+    intrinsics : tuple of float, optional
+        fx, fy, cx, cy in pixels of the source, integer pixel centres, for poses that come without any.
 
     Raises
     ------
     UserError
-        If nothing is there, the format is unknown, or a camera is not usable.
+        If nothing is there, the format is unknown, a camera is not usable, or intrinsics are missing or not wanted.
     """
     path = Path(path)
     if not path.exists():
         raise UserError(f"{path}: expected given cameras ({_FORMATS}), found nothing; check the path.")
-    if path.is_file():
+    poses, stated = _read_poses(path)
+    if poses:
+        cameras = _join(path, poses, stated, intrinsics)
+    elif intrinsics is not None:
+        raise UserError(
+            f"{path}: expected poses without intrinsics (NAME{POSE_SUFFIX} or a pose file of RGB-D Scenes v2) to go "
+            "with the sequence's key intrinsics, got cameras that state their own; remove that key."
+        )
+    elif path.is_file():
         cameras = _read_json(path)
     else:
         cameras = _read_folder(path)
     if not cameras:
         raise UserError(f"{path}: expected at least one camera, got none; check the file.")
     return tuple(cameras)
+
+
+def _read_poses(path: Path) -> tuple[dict[str, np.ndarray], Intrinsics | None]:
+    """Read the poses of an RGB-D data set and its intrinsics, if there are any; no poses for another format."""
+    if path.is_dir():
+        return read_pose_files(path), find_intrinsics(path)
+    return (read_pose_lines(path) if path.suffix == ".pose" else {}), None
+
+
+def _join(
+    path: Path, poses: Mapping[str, np.ndarray], stated: Intrinsics | None, given: Intrinsics | None
+) -> list[GivenCamera]:
+    if (stated is None) == (given is None):
+        raise UserError(
+            f"{path}: expected intrinsics of the cameras either in camera-intrinsics.txt beside the poses or by the "
+            f"sequence's key intrinsics, got {'none' if given is None else 'both'}; a Kinect's are about "
+            "[570, 570, 320, 240]."
+        )
+    lens = Lens(Camera(0, 0, *map(float, given or stated)))
+    return [GivenCamera(name, None, lens, _rigid_inverse(pose)) for name, pose in poses.items()]
 
 
 def _read_folder(path: Path) -> list[GivenCamera]:

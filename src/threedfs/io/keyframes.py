@@ -13,10 +13,12 @@ from threedfs.io.views import decode_view, encode_view
 from threedfs.types import Keyframe
 
 
-def write_keyframes(path: Path, keyframes: Sequence[Keyframe], header: Mapping[str, Any]) -> None:
+def write_keyframes(
+    path: Path, keyframes: Sequence[Keyframe], header: Mapping[str, Any], *, needs_stereo: bool = False
+) -> None:
     """Write keyframes.json; entries are found under ``keyframes.<name>``.
 
-    The angle to the neighbours, degrees, is there for the rules: it decides whether a keyframe needs stereo.
+    `needs_stereo` is for the rules: whether depth is to be anchored by stereo matches.
     """
     entries = {
         keyframe.view.name: {
@@ -24,11 +26,15 @@ def write_keyframes(path: Path, keyframes: Sequence[Keyframe], header: Mapping[s
             "neighbours": [encode_view(view) for view in keyframe.neighbours],
             "near": keyframe.near,
             "far": keyframe.far,
-            "neighbour_angle": keyframe.neighbour_angle,
         }
         for keyframe in keyframes
     }
-    content = {"unit": "scene unit", "order": list(entries), "keyframes": entries}
+    content = {
+        "unit": "scene unit",
+        "needs_stereo": needs_stereo,
+        "order": list(entries),
+        "keyframes": entries,
+    }
     write_document(path, KEYFRAMES, content, header)
 
 

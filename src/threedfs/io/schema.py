@@ -19,6 +19,7 @@ CONSISTENCY = "threedfs/consistency/1"
 VOLUME = "threedfs/volume/1"
 SUPPORT = "threedfs/support/1"
 SILHOUETTES = "threedfs/silhouettes/1"
+DEPTH_TRIAL = "threedfs/depth-trial/1"
 
 _RULES = {
     FRAMES: "frames or undistort",
@@ -34,6 +35,7 @@ _RULES = {
     VOLUME: "fuse_scene, fuse_object or object",
     SUPPORT: "locate",
     SILHOUETTES: "object",
+    DEPTH_TRIAL: "depth_trial",
 }
 
 

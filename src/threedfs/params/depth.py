@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
+from typing import Any
 
 from threedfs.errors import UserError
 from threedfs.params.field import parameter
@@ -82,13 +83,6 @@ class DepthParams:
         equation="Section 3.2, item i",
         minimum=0,
     )
-    stereo_angle: float = parameter(
-        18.0,
-        "angle to the neighbours from which checked stereo matches are measurements too (paper: never, 180)",
-        unit="degree",
-        minimum=0,
-        maximum=180,
-    )
     stereo_deviation: float = parameter(
         0.02, "standard deviation of a stereo match's inverse depth, relative to it", exclusive_minimum=0
     )
@@ -151,3 +145,26 @@ class DepthParams:
             )
         if self.median_size % 2 == 0:
             raise UserError(f"configuration, depth.median_size: expected one of 1, 3, 5, got {self.median_size}.")
+
+
+_MATCHING = (
+    "candidates",
+    "spacing",
+    "patch_radius",
+    "variance_floor",
+    "missing_cost",
+    "confidence_falloff",
+    "texture_half_variance",
+)
+_WEIGHTS = ("measurement_weight", "edge_falloff")
+
+
+def matching_settings(params: DepthParams) -> dict[str, Any]:
+    """Return the parameters that say how images are compared, as `gather_evidence` takes them."""
+    return {name: getattr(params, name) for name in _MATCHING}
+
+
+def solver_settings(params: DepthParams) -> dict[str, Any]:
+    """Return the parameters that say how the surface is found, as `optimise_depth` takes them."""
+    others = {*_MATCHING, *_WEIGHTS}
+    return {field.name: getattr(params, field.name) for field in fields(params) if field.name not in others}

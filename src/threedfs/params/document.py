@@ -29,11 +29,16 @@ video: null
 #     source: videos/mug.mp4        # a video or a folder of photos
 #     dataset: kitchen              # in place of the one above
 #     cameras: null                 # given cameras, instead of structure from motion
+#     intrinsics: null              # [fx, fy, cx, cy], for given cameras that are poses alone
 #     calibration: null             # photos or a video of a checkerboard
-#     truth: {masks: null, cameras: null, mesh: null, depth: null}
+#     object: true                  # false: no object is looked for, only the depth experiment runs
+#     truth: {masks: null, cameras: null, mesh: null, depth: null, depth_scale: 1000}
 #   dragon:
 #     rendered: dragon              # a take of the synthetic data set, with its truth
 sequences: {}
+
+# Go on without the sequences whose source is absent; they are named at the start.
+skip_absent: false
 
 # How the object is cut out of the fused volume.
 methods: [fused_sdf]
@@ -56,6 +61,7 @@ What the file names takes the place of the default, everything else stays. `pres
 the paper, `presets/quick.yaml` makes everything small; a file of sequences and a preset can be given together:
 `--configfile my.yaml config/presets/paper.yaml`. `benchmark.yaml` is the whole benchmark.
 One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`.
+`datasets/` has files of sequences: the data sets that the project is measured on, and the layouts of published ones.
 
 An unknown key, a wrong type or a value out of range stops the run before it starts, with a sentence.
 
@@ -80,17 +86,25 @@ _KEYS = {
     "sequences.<name>.source": "a video (mp4, mov) or a folder of photos",
     "sequences.<name>.dataset": "its own set, in place of `dataset`: one file may hold several sets",
     "sequences.<name>.cameras": "given cameras: a COLMAP model folder, `transforms.json`, `cameras.json` with "
-    "`cam_to_world`, or a folder of CONTOUR projection matrices; null: structure from motion",
+    "`cam_to_world`, a folder of CONTOUR projection matrices or of `NAME.pose.txt` (7-Scenes, 3DMatch), or a pose file "
+    "of RGB-D Scenes v2; null: structure from motion",
+    "sequences.<name>.intrinsics": "[fx, fy, cx, cy] in pixels of the source, the first pixel's centre at (0, 0), for "
+    "given and true cameras that are poses alone: RGB-D Scenes v2, and `NAME.pose.txt` without `camera-intrinsics.txt`",
     "sequences.<name>.calibration": "photos or a video of a checkerboard; null: the camera calibrates itself",
     "sequences.<name>.rendered": "instead of all of the above and below: a take of the synthetic data set Tabletop-12 "
     "(config/datasets/tabletop12.yaml), filmed by the run with all its truth",
     "sequences.<name>.true_cameras": "of a rendered sequence: take its true cameras as given, instead of structure "
     "from motion",
+    "sequences.<name>.object": "false: no object is looked for, the sequence only takes part in the depth experiment "
+    "(default true)",
     "sequences.<name>.truth.masks": "folder of masks named like the frames (white: object), to measure against; "
     "their frames become keyframes",
     "sequences.<name>.truth.cameras": "reference cameras, to measure against",
     "sequences.<name>.truth.mesh": "reference mesh, in the frame of the reference cameras",
-    "sequences.<name>.truth.depth": "folder of reference depth maps",
+    "sequences.<name>.truth.depth": "folder of true depth images, `NAME.depth.png` or `NNNNN-depth.png`",
+    "sequences.<name>.truth.depth_scale": "their units per unit of the true cameras (default 1000: millimetres and "
+    "metres)",
+    "skip_absent": "go on without the sequences whose source is absent; they are named at the start",
     "methods": "how the object is cut out: `fused_sdf`",
     "seed": "of every random choice",
     "store": "folder of finished work, and of the kernels compiled for it",

@@ -55,6 +55,13 @@ class KeyframesParams:
         "points triangulated from both, below which a frame is no neighbour: two passes of a long path drift apart",
         minimum=0,
     )
+    stereo_angle: float = parameter(
+        18.0,
+        "median angle to the neighbours from which depth is anchored by stereo matches (paper: never, 180)",
+        unit="degree",
+        minimum=0.0,
+        maximum=180.0,
+    )
     near_factor: float = parameter(
         0.55,
         "near end of the depth range over the 1st percentile of the sparse depths",

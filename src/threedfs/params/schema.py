@@ -29,6 +29,8 @@ STAGES = (
     "fuse_object",
     "object",
     "evaluate",
+    "depth_trial",
+    "depth_experiment",
 )
 """Every stage that may have parameters, in the order of the pipeline."""
 

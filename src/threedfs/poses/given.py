@@ -57,6 +57,13 @@ def find_cameras(
     return found
 
 
+def state_size(lens: Lens, source_shape: tuple[int, int]) -> Lens:
+    """Return a lens with the size of its images: that of the source (H, W), if it states none (0)."""
+    if lens.camera.width:
+        return lens
+    return replace(lens, camera=replace(lens.camera, width=source_shape[1], height=source_shape[0]))
+
+
 def fit_lens(lens: Lens, source_shape: tuple[int, int], shape: tuple[int, int]) -> Lens:
     """Scale a given lens to the working frames.
 
@@ -72,8 +79,7 @@ def fit_lens(lens: Lens, source_shape: tuple[int, int], shape: tuple[int, int]) 
     UserError
         If its images have another aspect ratio than the frames.
     """
-    if not lens.camera.width:
-        lens = replace(lens, camera=replace(lens.camera, width=source_shape[1], height=source_shape[0]))
+    lens = state_size(lens, source_shape)
     stated, wanted = lens.camera.width / lens.camera.height, shape[1] / shape[0]
     # Rounding the working size to whole pixels changes the ratio by less than one pixel of the shorter side.
     if abs(stated / wanted - 1) > 1.5 / min(shape):

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -35,11 +35,12 @@ from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
 from threedfs.io.metrics import Metric, write_metrics
 from threedfs.io.poses import Poses, read_poses
-from threedfs.io.truth import find_depth_images, read_depth_image
+from threedfs.io.truth import read_depth_image
+from threedfs.io.truth_files import find_depth_images
 from threedfs.job import Job
 from threedfs.object.silhouettes import draw_source_silhouette
 from threedfs.params.evaluate import EvaluateParams
-from threedfs.poses.given import find_cameras
+from threedfs.poses.given import find_cameras, state_size
 from threedfs.types import Keyframe, Mesh, View
 
 Filmed = tuple[View, tuple[float, float]]
@@ -71,6 +72,8 @@ def run(
     dataset: str,
     sequence: str,
     method: str,
+    intrinsics: Sequence[float] | None,
+    depth_scale: float,
     params: EvaluateParams,
     job: Job,
 ) -> None:
@@ -92,7 +95,7 @@ def run(
     figures = reconstruction_figures(len(solved.views), len(solved.unposed), solved.quality)
     truth = None
     if cameras_truth is not None:
-        truth = _read_truth(cameras_truth, solved, store)
+        truth = _read_truth(cameras_truth, intrinsics, solved, store)
         figures += _score_poses(truth, solved)
     if masks_truth is not None:
         figures += _score_masks(masks_truth, masks, surface, truth, selected, store, job)
@@ -104,7 +107,7 @@ def run(
         error = measure_mesh(aligned, exact, params.mesh_thresholds, params.surface_samples, generator)
         figures += mesh_figures(error)
     if depth_truth is not None:
-        figures += _score_depth_by_images(depth_truth, maps, truth, selected, solved, store)
+        figures += _score_depth_by_images(depth_truth, depth_scale, maps, truth, selected, solved, store)
     figures.append(Figure("mesh_closed", float(is_closed(surface)), "1"))
     if sequence in params.cylinder_sequences:
         figures += cylinder_figures(measure_cylinder(surface, params.surface_samples, generator))
@@ -115,8 +118,8 @@ def run(
     job.progress.note(f"{len(figures)} figures of {len(selected)} keyframes")
 
 
-def _read_truth(path: Path, solved: Poses, store: FrameStore) -> _Truth:
-    cameras = read_given_cameras(path)
+def _read_truth(path: Path, intrinsics: Sequence[float] | None, solved: Poses, store: FrameStore) -> _Truth:
+    cameras = read_given_cameras(path, intrinsics)
     found = find_cameras(cameras, store.names, store.indices, numbered=store.ordered)
     seen = {store.names[number]: camera for number, camera in found.items()}
     taken = {camera.name for camera in seen.values()}
@@ -137,11 +140,8 @@ def _frame_name(given: GivenCamera, store: FrameStore) -> str:
 
 
 def _film(given: GivenCamera, store: FrameStore) -> Filmed:
-    lens = given.lens
-    camera = lens.camera
-    if not camera.width:
-        camera = replace(camera, width=store.source_shape[1], height=store.source_shape[0])
-    return View(given.name, camera, given.cam_from_world), (lens.k1, lens.k2)
+    lens = state_size(given.lens, store.source_shape)
+    return View(given.name, lens.camera, given.cam_from_world), (lens.k1, lens.k2)
 
 
 def _score_poses(truth: _Truth, solved: Poses) -> list[Figure]:
@@ -203,6 +203,7 @@ def _score_depth_by_mesh(
 
 def _score_depth_by_images(
     folder: Path,
+    scale: float,
     maps: Mapping[str, Path],
     truth: _Truth,
     selected: Mapping[str, Keyframe],
@@ -211,9 +212,9 @@ def _score_depth_by_images(
 ) -> list[Figure]:
     pairs: dict[str, DepthPairs] = {}
     for name, file in find_depth_images(folder, selected).items():
-        image = read_depth_image(file)
+        image = read_depth_image(file, scale)
         check_mask_size(image, store.source_shape, str(file))
         pixels = filmed_pixels(selected[name].view.camera, solved.distortion, store.source_shape)
         estimated = truth.from_scene.scale * read_depth_map(maps[name]).depth
         pairs[name] = pair_depths(estimated, sample_nearest(image, pixels, np.nan))
-    return depth_figures(pairs, "m", "scene_depth")
+    return depth_figures(pairs, "truth unit", "scene_depth")

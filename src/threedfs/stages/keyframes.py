@@ -94,11 +94,12 @@ def run(
             "No frame sees its points from another place, so there is no depth; expected a camera that moves around "
             "the object; check the given cameras, or film again."
         )
-    write_keyframes(keyframes, entries, job.header)
+    angle = float(np.median([entry.neighbour_angle for entry in entries]))
+    write_keyframes(keyframes, entries, job.header, needs_stereo=angle >= params.stereo_angle)
     fewest = min(len(entry.neighbours) for entry in entries)
     job.progress.note(
         f"{len(entries)} keyframes of {len(views)} frames, {int(annotated.sum())} of them annotated; "
-        f"at least {fewest} neighbours each"
+        f"at least {fewest} neighbours each, {angle:.0f} degrees away in the median"
     )
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from threedfs.colmap.triangulation import triangulate
 from threedfs.geometry.lens import Lens
 from threedfs.io.calibration import read_calibration
 from threedfs.io.frames import FrameStore, read_frames
-from threedfs.io.given_cameras import read_given_cameras
+from threedfs.io.given_cameras import GivenCamera, read_given_cameras
 from threedfs.io.points import write_points
 from threedfs.io.poses import Poses, write_poses
 from threedfs.job import Job
@@ -55,6 +55,7 @@ def run(
     calibration: Path | None,
     poses: Path,
     points: Path,
+    intrinsics: Sequence[float] | None,
     params: PosesParams,
     job: Job,
 ) -> None:
@@ -79,14 +80,17 @@ def run(
     )
     matcher = PairMatcher(FrameFeatures(features, store.shape, store.ordered), rule, job.seed, job.threads)
     if cameras is not None:
-        solved = _triangulate_given(store, matcher, cameras, params, job)
+        given = read_given_cameras(cameras, intrinsics)
+        solved = _triangulate_given(store, matcher, given, params, job)
     else:
         solved = _estimate(store, matcher, calibration, params, job)
     _write(store, solved, {"features": median_features, **solved.quality}, poses, points, job)
 
 
-def _triangulate_given(store: FrameStore, matcher: PairMatcher, cameras: Path, params: PosesParams, job: Job) -> Solved:
-    found = find_cameras(read_given_cameras(cameras), store.names, store.indices, numbered=store.ordered)
+def _triangulate_given(
+    store: FrameStore, matcher: PairMatcher, given: Sequence[GivenCamera], params: PosesParams, job: Job
+) -> Solved:
+    found = find_cameras(given, store.names, store.indices, numbered=store.ordered)
     lenses = {number: fit_lens(camera.lens, store.source_shape, store.shape) for number, camera in found.items()}
     poses = {number: camera.cam_from_world for number, camera in found.items()}
     pairs = overlapping_pairs(poses, max_angle=np.radians(params.pair_angle), most=params.pairs_per_frame)

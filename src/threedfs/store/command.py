@@ -40,7 +40,7 @@ def run_job(
     outputs: Mapping[str, Path],
     settings: Mapping[str, Any],
     wildcards: Mapping[str, str],
-    labels: Mapping[str, str],
+    labels: Mapping[str, Any],
     *,
     store: Path,
     log: Path,
@@ -60,8 +60,9 @@ def run_job(
     wildcards : mapping of str to str
         All wildcards of the rule. The sequence only names the job in messages, so that two sequences of the same
         content share their work.
-    labels : mapping of str to str
-        Names that a stage writes into its output, which therefore count.
+    labels : mapping of str to JSON values
+        What the configuration says of this sequence, names that a stage writes into its output among it; given to the
+        stage like wildcards. All of it counts.
     log : Path
     refusal : str
         Why the job cannot be done, if that is known before.

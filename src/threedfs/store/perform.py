@@ -81,7 +81,7 @@ def perform(
     inputs: Inputs,
     outputs: Mapping[str, Path],
     settings: Mapping[str, Any],
-    wildcards: Mapping[str, str],
+    wildcards: Mapping[str, Any],
     store: Path,
     *,
     progress: Progress,
@@ -107,7 +107,7 @@ def perform(
         Files, or folders if the stage makes folders.
     settings : mapping
         Every parameter of the stage.
-    wildcards : mapping of str to str
+    wildcards : mapping of str to JSON values
         What tells this job from others of its stage; given to the stage too.
     store : Path
     progress : Progress
@@ -159,7 +159,7 @@ def _identify(
     stage: str,
     inputs: Inputs,
     settings: Mapping[str, Any],
-    wildcards: Mapping[str, str],
+    wildcards: Mapping[str, Any],
     digests: InputDigests,
     seed: int,
     modules: Sequence[str],
@@ -185,7 +185,7 @@ def _run_stage(
     action: Action,
     inputs: Inputs,
     outputs: Mapping[str, Path],
-    wildcards: Mapping[str, str],
+    wildcards: Mapping[str, Any],
     kernels: Path,
     job: Job,
 ) -> None:
