@@ -1,8 +1,13 @@
 """Exact tests of merging semi-dense depth and stereo matches."""
 
+import inspect
+
 import numpy as np
 
+from threedfs.depth.evidence import gather_evidence
 from threedfs.depth.measurements import merge_measurements
+from threedfs.depth.solver import optimise_depth
+from threedfs.params.depth import DepthParams, matching_settings, solver_settings
 
 
 def test_merged_by_variance():
@@ -14,3 +19,10 @@ def test_merged_by_variance():
     inverse_depth, merged = merge_measurements(semidense, variance, stereo, deviation=0.05)
     np.testing.assert_allclose(inverse_depth, [[1.0, 2.0, 1.5, nan]])
     np.testing.assert_allclose(merged, [[0.01, 0.01, 0.005, nan]])
+
+
+def test_every_setting_is_taken_by_whom_it_is_handed_to():
+    """Contract: what the parameters hand on are arguments of the functions that take them."""
+    params = DepthParams()
+    assert set(matching_settings(params)) <= set(inspect.signature(gather_evidence).parameters)
+    assert set(solver_settings(params)) <= set(inspect.signature(optimise_depth).parameters)

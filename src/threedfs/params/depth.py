@@ -156,7 +156,7 @@ _MATCHING = (
     "confidence_falloff",
     "texture_half_variance",
 )
-_WEIGHTS = ("measurement_weight", "edge_falloff")
+_WEIGHTS = ("measurement_weight", "stereo_deviation", "unmatched_trust", "edge_falloff")
 
 
 def matching_settings(params: DepthParams) -> dict[str, Any]:
