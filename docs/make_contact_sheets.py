@@ -16,7 +16,7 @@ import av
 import cv2
 import numpy as np
 
-COLUMNS, WIDTH = 8, 1600
+COLUMNS, WIDTH = 8, 1440
 
 
 def draw_row(video: Path, name: str) -> np.ndarray:
@@ -38,7 +38,7 @@ def main(results: Path, picture: Path, names: Sequence[str]) -> None:
     """Draw one picture."""
     names = names or sorted(video.parents[1].name for video in results.glob("*/00_render/video.mp4"))
     sheet = np.vstack([draw_row(results / name / "00_render/video.mp4", name) for name in names])
-    cv2.imwrite(str(picture), sheet[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 80])
+    cv2.imwrite(str(picture), sheet[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 72])
 
 
 if __name__ == "__main__":
