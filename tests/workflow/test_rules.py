@@ -42,7 +42,7 @@ def test_every_rule_has_all_blocks_in_one_order():
         if path.name in ("common.smk", "inputs.smk", "run.smk"):
             continue
         for rule in path.read_text().split("\n\n\n")[1:]:
-            found = re.findall(r"^    (\w+):", rule, re.MULTILINE)
+            found = [name for name in re.findall(r"^    (\w+):", rule, re.MULTILINE) if name != "wildcard_constraints"]
             own = blocks if "input" in found else blocks[1:]  # the first rule makes its data from nothing
             assert found == own, f"{path.name}: {rule.splitlines()[0]}"
 

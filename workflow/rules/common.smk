@@ -1,5 +1,6 @@
 # Configuration, sequences and the parameters that all rules have.
 import json
+import re
 import sys
 
 from threedfs.errors import UserError

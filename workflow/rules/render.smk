@@ -1,6 +1,8 @@
 # 00: film a take of the synthetic data set, where a sequence is rendered.
 from threedfs.synthetic.takes import take_module
 
+RENDERED = [name for name in SEQUENCES if SEQUENCES[name]["rendered"]]
+
 
 rule render:
     output:
@@ -13,6 +15,8 @@ rule render:
         "results/{sequence}/logs/render.log",
     benchmark:
         "results/{sequence}/benchmarks/render.tsv"
+    wildcard_constraints:
+        sequence="|".join(map(re.escape, RENDERED)) or "(?!)",
     conda:
         "../../envs/threedfs.yaml"
     threads: 2

@@ -59,7 +59,8 @@ def run(
         **solver_settings(params),
         note=job.progress.note,
     )
-    result = np.where(frames.valid & (solution.depth > 0), solution.depth, np.nan).astype(np.float32)
+    # Where nothing holds it, the smooth surface may swing far out; in front of the scene it would hide all else.
+    result = np.where(frames.valid & (solution.depth >= entry.near), solution.depth, np.nan).astype(np.float32)
     write_depth_map(
         depth,
         DepthMap(result, evidence.min_cost, confidence.astype(np.float32)),
