@@ -7,17 +7,15 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from numba import njit
 
 from threedfs.frames.scale import scale_camera
 from threedfs.geometry.rigid import invert
-from threedfs.stereo.slanted_patch import disparity_rate, faces_camera, patch_cost, weigh_patch
+from threedfs.stereo.sweep import improve_planes, refine_depth
 from threedfs.types import View
 
 # Where hypotheses are taken from, of the other colour of the checkerboard: beside the pixel, and farther away.
 _BESIDE = np.array([(-1, 0), (1, 0), (0, -1), (0, 1)], np.int64)
 _AROUND = np.array([*_BESIDE, (-5, 0), (5, 0), (0, -5), (0, 5)], np.int64)
-_UNMATCHED = 0.6  # hypotheses of patches that cost more are not worth spreading
 
 
 @dataclass(frozen=True)
@@ -89,13 +87,20 @@ def match_patches(
     -----
     The scheme is that of patch-match stereo on a checkerboard (Bleyer et al. 2011, Galliani et al. 2015).
     """
+    comparison = (
+        patch_offsets(rule.radius, rule.stride),
+        1 / rule.likeness,
+        rule.variance_floor,
+        rule.least_variance,
+        min(rule.best_views, len(neighbours)),
+    )
     planes = None
     for level in reversed(range(levels)):
         shape = tuple(-(-side // 2**level) for side in grey.shape)
         view = _resize_view(reference, shape)
         small = _shrink(grey, shape)
         stack = np.stack([_shrink(image, shape) for image in images])
-        infinity, epipole = neighbour_maps(view, [_resize_view(each, shape) for each in neighbours])
+        views = (stack, *neighbour_maps(view, [_resize_view(each, shape) for each in neighbours]))
         if planes is None:
             planes = guess_planes(_sample(measured, shape), near, far, np.random.default_rng(seed))
         else:
@@ -104,20 +109,13 @@ def match_patches(
         cost = np.full(shape, np.inf)
         for turn in range(max(1, rounds >> (levels - 1 - level))):
             for colour in (0, 1):
-                _sweep(
+                improve_planes(
                     small,
-                    stack,
-                    infinity,
-                    epipole,
+                    views,
+                    comparison,
                     planes,
                     cost,
-                    patch_offsets(rule.radius, rule.stride),
-                    1 / rule.likeness,
-                    rule.variance_floor,
-                    rule.least_variance,
-                    min(rule.best_views, len(neighbours)),
-                    1 / far,
-                    1 / near,
+                    (1 / far, 1 / near),
                     view.camera.fx,
                     _AROUND if coarsest else _BESIDE,
                     coarsest,
@@ -126,19 +124,7 @@ def match_patches(
                     np.uint64((seed * 97 + level) * 97 + turn + 1),
                 )
         if level == 0:
-            _refine_depth(
-                small,
-                stack,
-                infinity,
-                epipole,
-                planes,
-                cost,
-                patch_offsets(rule.radius, rule.stride),
-                1 / rule.likeness,
-                rule.variance_floor,
-                rule.least_variance,
-                min(rule.best_views, len(neighbours)),
-            )
+            refine_depth(small, views, comparison, planes, cost)
         note(f"level {level}: {100 * np.mean(cost < 0.1):.0f} % of the patches match")
     planes[cost >= 1] = np.nan
     return PatchMatch(planes[..., 0], planes[..., 1:], np.minimum(cost, 1.0))
@@ -199,193 +185,3 @@ def _refine_grid(planes: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
     inverse_depth, along, down = np.moveaxis(planes[row, column], -1, 0)
     inverse_depth = inverse_depth + along * (columns - column) + down * (rows - row)
     return np.stack([inverse_depth, along * planes.shape[1] / shape[1], down * planes.shape[0] / shape[0]], axis=-1)
-
-
-@njit(cache=True)
-def _draw(state):
-    """Return the next state of the generator (xorshift) and a number in [-1, 1)."""
-    state ^= state << np.uint64(13)
-    state ^= state >> np.uint64(7)
-    state ^= state << np.uint64(17)
-    return state, np.float64(state >> np.uint64(11)) / 4503599627370496.0 - 1.0
-
-
-@njit(cache=True)
-def _sweep(
-    grey,
-    images,
-    infinity,
-    epipole,
-    planes,
-    cost,
-    offsets,
-    falloff,
-    variance_floor,
-    least_variance,
-    best,
-    least,
-    most,
-    focal,
-    spread,
-    guess,
-    scale,
-    colour,
-    seed,
-):
-    """Improve the planes of one colour of the checkerboard in place: by those of the other, and by small changes."""
-    height, width = grey.shape
-    weights = np.empty(len(offsets))
-    values = np.empty(len(offsets))
-    costs = np.empty(len(images))
-    trial = np.empty(3)
-    kept = np.empty(3)
-    for v in range(height):
-        for u in range((v + colour) % 2, width, 2):
-            deviation = weigh_patch(grey, u, v, offsets, falloff, variance_floor, least_variance, weights, values)
-            if deviation == 0:
-                continue
-            kept[:] = planes[v, u]
-            lowest = cost[v, u]
-            if lowest == np.inf:
-                lowest = 1.0
-                if faces_camera(kept, focal, least, most):
-                    lowest = patch_cost(
-                        images,
-                        infinity,
-                        epipole,
-                        u,
-                        v,
-                        kept,
-                        offsets,
-                        weights,
-                        values,
-                        deviation,
-                        variance_floor,
-                        best,
-                        costs,
-                    )
-            for i in range(len(spread)):
-                x = u + spread[i, 0]
-                y = v + spread[i, 1]
-                if x < 0 or y < 0 or x >= width or y >= height:
-                    continue
-                if cost[y, x] > _UNMATCHED and cost[y, x] < np.inf:
-                    continue
-                trial[1] = planes[y, x, 1]
-                trial[2] = planes[y, x, 2]
-                trial[0] = planes[y, x, 0] - trial[1] * spread[i, 0] - trial[2] * spread[i, 1]
-                if not faces_camera(trial, focal, least, most) or _alike(trial, kept, focal):
-                    continue
-                value = patch_cost(
-                    images,
-                    infinity,
-                    epipole,
-                    u,
-                    v,
-                    trial,
-                    offsets,
-                    weights,
-                    values,
-                    deviation,
-                    variance_floor,
-                    best,
-                    costs,
-                )
-                if value < lowest:
-                    lowest = value
-                    kept[:] = trial
-            state = (seed * np.uint64(0x9E3779B97F4A7C15)) ^ (
-                np.uint64(v * width + u + 1) * np.uint64(0xBF58476D1CE4E5B9)
-            )
-            state ^= state >> np.uint64(29)
-            for change in range(0 if guess else 1, 4 if guess else 3):
-                state, first = _draw(state)
-                state, second = _draw(state)
-                state, third = _draw(state)
-                trial[:] = kept
-                if change == 0:
-                    trial[0] = least + (most - least) * 0.5 * (first + 1)
-                    trial[1] = second * trial[0] / focal
-                    trial[2] = third * trial[0] / focal
-                if change == 1 or change == 3:
-                    trial[0] = kept[0] * (1 + 0.02 * scale * first)
-                if change == 2 or change == 3:
-                    trial[1] += second * scale * kept[0] / focal
-                    trial[2] += third * scale * kept[0] / focal
-                if not faces_camera(trial, focal, least, most):
-                    continue
-                value = patch_cost(
-                    images,
-                    infinity,
-                    epipole,
-                    u,
-                    v,
-                    trial,
-                    offsets,
-                    weights,
-                    values,
-                    deviation,
-                    variance_floor,
-                    best,
-                    costs,
-                )
-                if value < lowest:
-                    lowest = value
-                    kept[:] = trial
-            planes[v, u] = kept
-            cost[v, u] = lowest
-
-
-@njit(cache=True)
-def _refine_depth(
-    grey, images, infinity, epipole, planes, cost, offsets, falloff, variance_floor, least_variance, best
-):
-    """Move each plane to the vertex of the parabola through its cost half a pixel of disparity to either side."""
-    height, width = grey.shape
-    weights = np.empty(len(offsets))
-    values = np.empty(len(offsets))
-    costs = np.empty(len(images))
-    trial = np.empty(3)
-    beside = np.empty(2)
-    for v in range(height):
-        for u in range(width):
-            if cost[v, u] > _UNMATCHED:
-                continue
-            deviation = weigh_patch(grey, u, v, offsets, falloff, variance_floor, least_variance, weights, values)
-            trial[:] = planes[v, u]
-            kept = trial[0]
-            step = 0.5 / max(disparity_rate(infinity[0], epipole[0], u, v, kept), 1e-9)
-            for side in range(2):
-                trial[0] = kept + (2 * side - 1) * step
-                beside[side] = patch_cost(
-                    images,
-                    infinity,
-                    epipole,
-                    u,
-                    v,
-                    trial,
-                    offsets,
-                    weights,
-                    values,
-                    deviation,
-                    variance_floor,
-                    best,
-                    costs,
-                )
-            curvature = beside[0] + beside[1] - 2 * cost[v, u]
-            if curvature <= 0 or beside[0] < cost[v, u] or beside[1] < cost[v, u]:
-                continue
-            trial[0] = kept + step * 0.5 * (beside[0] - beside[1]) / curvature
-            value = patch_cost(
-                images, infinity, epipole, u, v, trial, offsets, weights, values, deviation, variance_floor, best, costs
-            )
-            if value < cost[v, u]:
-                cost[v, u] = value
-                planes[v, u, 0] = trial[0]
-
-
-@njit(cache=True)
-def _alike(plane, other, focal):
-    """Say whether two planes differ by less than refinement would."""
-    apart = abs(plane[1] - other[1]) + abs(plane[2] - other[2])
-    return abs(plane[0] - other[0]) < 1e-4 * other[0] and apart < 0.05 * other[0] / focal

@@ -18,8 +18,8 @@ _MOST_STRETCH = 6.0  # by how much a patch's area may shrink or grow from view t
 
 
 @njit(cache=True)
-def weigh_patch(reference, u, v, offsets, falloff, variance_floor, least_variance, weights, values):
-    """Weigh the samples of a patch by their likeness to its centre; fill `weights` and `values` (less their mean).
+def weigh_patch(reference, u, v, offsets, falloff, variance_floor, least_variance, patch):
+    """Weigh the samples of a patch by their likeness to its centre; fill `patch`: weights, and values less their mean.
 
     Returns
     -------
@@ -27,6 +27,7 @@ def weigh_patch(reference, u, v, offsets, falloff, variance_floor, least_varianc
         1 / sqrt(weighted variance + floor); 0 where the patch leaves the valid image or has no texture.
     """
     height, width = reference.shape
+    weights, values = patch
     centre = reference[v, u]
     total = 0.0
     mean = 0.0
@@ -53,9 +54,10 @@ def weigh_patch(reference, u, v, offsets, falloff, variance_floor, least_varianc
 
 
 @njit(cache=True)
-def view_cost(image, infinity, epipole, u, v, plane, offsets, weights, values, inverse_deviation, variance_floor):
+def view_cost(image, infinity, epipole, u, v, plane, offsets, patch, inverse_deviation, variance_floor):
     """Compare a weighed patch with one neighbour: (1 - NCC) / 2 in [0, 1], or -1 where it is not seen there."""
     height, width = image.shape
+    weights, values = patch
     w, gu, gv = plane[0], plane[1], plane[2]
     x0 = infinity[0, 0] * u + infinity[0, 1] * v + infinity[0, 2] + epipole[0] * w
     x1 = infinity[1, 0] * u + infinity[1, 1] * v + infinity[1, 2] + epipole[1] * w
@@ -105,24 +107,14 @@ def view_cost(image, infinity, epipole, u, v, plane, offsets, weights, values, i
 
 
 @njit(cache=True)
-def patch_cost(
-    images, infinity, epipole, u, v, plane, offsets, weights, values, inverse_deviation, variance_floor, best, costs
-):
-    """Average the cost of a patch over the `best` views that match it best; 1 where fewer see it."""
+def patch_cost(views, rule, u, v, plane, patch, inverse_deviation, costs):
+    """Average the cost of a patch over the views that match it best; 1 where fewer see it."""
+    images, infinity, epipole = views
+    offsets, _, variance_floor, _, best = rule
     seen = 0
     for view in range(len(images)):
         cost = view_cost(
-            images[view],
-            infinity[view],
-            epipole[view],
-            u,
-            v,
-            plane,
-            offsets,
-            weights,
-            values,
-            inverse_deviation,
-            variance_floor,
+            images[view], infinity[view], epipole[view], u, v, plane, offsets, patch, inverse_deviation, variance_floor
         )
         if cost >= 0:
             place = seen
