@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -81,8 +81,9 @@ def find_support(
     and faces its way, times the cosine between its normal and `up`, less the nearby surface that lies below it:
     a table's top has nothing below, a box's top has the table. Cameras must be on its positive side.
 
-    Where the fused surface has no plane, or a rough one that the semi-dense points tell more sharply, theirs is
-    taken (`settle_support`).
+    Where the semi-dense points have a plane at a finer tolerance than the fused surface, theirs is taken: fused
+    from uncertain depth, a surface has layers below the true one. Otherwise the surface's, settled on points near it
+    (`settle_support`).
 
     Differs from the paper: Sec. 3.4.2 fits one plane to all points of the zero level surface, which takes a
     wall, or a compromise, where the floor is not the largest surface.
@@ -104,12 +105,17 @@ def find_support(
     UserError
         If no plane reaches `rule.min_share`, neither of the surface nor of the points.
     """
-    found, share = _widen(surface, normals, centres, fixation, up, rule, generator)
+    found, share, doublings = _widen(surface, normals, centres, fixation, up, rule, generator)
+    if found is not None and doublings == 0:
+        return settle_support(found, points, centres, fixation, up, rule, generator)
+    # Points have no normals: the object's own count among those that the share is of.
+    halved = replace(rule, min_share=rule.min_share / 2)
+    upward = np.broadcast_to(up, points.shape)
+    told, points_share, points_doublings = _widen(points, upward, centres, fixation, up, halved, generator)
+    if told is not None and points_doublings < doublings:
+        return told
     if found is not None:
         return settle_support(found, points, centres, fixation, up, rule, generator)
-    found, points_share = _widen(points, np.broadcast_to(up, points.shape), centres, fixation, up, rule, generator)
-    if found is not None:
-        return found
     raise UserError(_explain(max(share, points_share), rule))
 
 
@@ -121,15 +127,25 @@ def _widen(
     up: np.ndarray,
     rule: SupportRule,
     generator: np.random.Generator,
-) -> tuple[SupportPlane | None, float]:
-    """Search at wider and wider tolerance; return the first plane with enough share, and the best share met."""
+) -> tuple[SupportPlane | None, float, int]:
+    """Search at wider and wider tolerance for a plane with enough share.
+
+    Returns
+    -------
+    plane : SupportPlane or None
+    share : float
+        The best met.
+    doublings : int
+        Of the tolerance at which the plane was found; one more than allowed where there is none.
+    """
+    none = rule.doublings + 1
     if len(points) < _FEWEST:
-        return None, 0.0
+        return None, 0.0, none
     weights = np.exp(-((points - fixation) ** 2).sum(axis=1) / (2 * rule.reach**2))
     upward = normals @ up > np.cos(np.radians(rule.max_tilt))
     best = 0.0
     if not (weights * upward).sum() > 0:
-        return None, best
+        return None, best, none
     for doubling in range(rule.doublings + 1):
         tolerance = rule.tolerance * 2**doubling
         plane = _search(points, normals, weights, centres, up, tolerance, rule, generator)
@@ -140,8 +156,8 @@ def _widen(
         best = max(best, share)
         if share >= rule.min_share:
             noise = 1.4826 * float(np.median(np.abs(plane.distance(points[on]))))
-            return SupportPlane(plane, share, noise, float(points[on].std(axis=0).mean())), best
-    return None, best
+            return SupportPlane(plane, share, noise, float(points[on].std(axis=0).mean())), best, doubling
+    return None, best, none
 
 
 def settle_support(
