@@ -127,12 +127,11 @@ def test_points_tell_the_plane_where_the_surface_has_none():
     assert abs(found.plane.offset) < 0.005
 
 
-def test_sharp_points_are_believed_over_a_surface_with_layers_below():
-    """Property: where depth is uncertain the fused surface has layers under the table; the points lie on the table."""
+def test_sharp_points_are_believed_over_a_rough_surface():
+    """Property: fused from uncertain depth, the surface sinks aslant under the table; the points lie on the table."""
     rng = np.random.default_rng(4)
-    layers = [patch(rng, 1500, (-0.6, -0.6, z), (1.2, 0, 0.25), (0, 1.2, 0.2), (0, 0, 1), 0.04) for z in (-0.6, -0.4)]
-    rough = patch(rng, 3000, (-0.6, -0.6, 0), (1.2, 0, 0), (0, 1.2, 0), (0, 0, 1), 0.05)
-    surface, normals = (np.concatenate(part) for part in zip(rough, *layers, strict=True))
+    slanted = np.array([0.3, 0.3, 0.9]) / np.linalg.norm([0.3, 0.3, 0.9])
+    surface, normals = patch(rng, 3000, (-0.4, -0.4, -0.05), (0.8, 0, -0.27), (0, 0.8, -0.27), slanted, 0.04)
     table, _ = patch(rng, 1000, (-0.4, -0.4, 0), (0.8, 0, 0), (0, 0.8, 0), (0, 0, 1), 0.003)
     on_object = rng.uniform((-0.1, -0.1, 0.02), (0.1, 0.1, 0.3), (2000, 3))
     centres = scene()[2]
