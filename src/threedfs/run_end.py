@@ -7,8 +7,8 @@ from collections import defaultdict
 from pathlib import Path
 
 from threedfs.evaluate.costs import cost_figures
-from threedfs.evaluate.summary import render_summary
-from threedfs.io.metrics import Metric, read_metrics, write_metrics
+from threedfs.evaluate.summary import DEPTH_COLUMNS, render_summary
+from threedfs.io.metrics import DEPTH_METHODS, Metric, read_metrics, write_metrics
 
 
 def summarise_run(results: Path, store: Path, since: float) -> str:
@@ -35,12 +35,18 @@ def summarise_run(results: Path, store: Path, since: float) -> str:
             for cost in figures
         ],
     )
-    tables: dict[str, dict[str, float]] = defaultdict(dict)
+    objects: dict[str, dict[str, float]] = defaultdict(dict)
+    depths: dict[str, dict[str, float]] = defaultdict(dict)
     for metric in metrics:
+        of_depth = metric.method.startswith(DEPTH_METHODS)
+        figures = (depths if of_depth else objects)[f"{metric.sequence} {metric.method}"]
         if not metric.keyframe:
-            tables[f"{metric.sequence} {metric.method}"][metric.name] = metric.value
-        tables[f"{metric.sequence} {metric.method}"] |= {cost.name: cost.value for cost in costs[metric.sequence]}
-    return f"\n{render_summary(tables)}\n\nAll figures: {table}; seconds are of all cores together.\n"
+            figures[metric.name] = metric.value
+        if not of_depth:
+            figures |= {cost.name: cost.value for cost in costs[metric.sequence]}
+    blocks = [render_summary(objects)] if objects else []
+    blocks += [render_summary(depths, DEPTH_COLUMNS)] if depths else []
+    return "\n" + "\n\n".join([*blocks, f"All figures: {table}; seconds are of all cores together.\n"])
 
 
 def find_failures(results: Path, since: float) -> str:

@@ -7,7 +7,7 @@ from threedfs.errors import UserError
 from threedfs.evaluate.costs import cost_figures
 from threedfs.evaluate.depth_error import DepthPairs
 from threedfs.evaluate.figures import depth_figures, mask_figures
-from threedfs.evaluate.summary import render_summary
+from threedfs.evaluate.summary import DEPTH_COLUMNS, render_summary
 from threedfs.io.metrics import COLUMNS, Metric, read_metrics, write_metrics
 
 
@@ -48,6 +48,11 @@ def test_mean_median_and_least_overlap():
     figures = {figure.name: figure.value for figure in overlap if not figure.keyframe}
     assert figures == {"iou_mean": pytest.approx(0.7), "iou_median": 0.7, "iou_min": 0.5}
     assert mask_figures({}) == []
+
+
+def test_depth_experiment_has_columns_of_its_own():
+    line = render_summary({"mug depth/first_order/100": {"depth_rmse": 0.01234, "iou_mean": 1}}, DEPTH_COLUMNS)
+    assert [text.split() for text in line.splitlines()] == [["RMSE"], ["mug", "depth/first_order/100", "0.0123"]]
 
 
 def test_depth_of_a_sequence_is_over_pixels_not_over_keyframes():

@@ -26,6 +26,12 @@ def configuration_schema() -> dict[str, Any]:
     """Return the JSON schema of the configuration."""
     truth = {name: _PATH for name in ("masks", "cameras", "mesh", "depth")}
     truth["depth_scale"] = {"type": "number", "exclusiveMinimum": 0}
+    truth["depth_camera"] = {
+        "type": ["object", "null"],
+        "additionalProperties": False,
+        "required": ["intrinsics", "offset"],
+        "properties": {"intrinsics": _numbers(4), "offset": _numbers(3)},
+    }
     sequence = {
         "type": "object",
         "additionalProperties": False,
@@ -33,7 +39,7 @@ def configuration_schema() -> dict[str, Any]:
         "properties": {
             "source": {"type": "string"},
             "cameras": _PATH,
-            "intrinsics": {"type": ["array", "null"], "items": {"type": "number"}, "minItems": 4, "maxItems": 4},
+            "intrinsics": {**_numbers(4), "type": ["array", "null"]},
             "calibration": _PATH,
             "object": {"type": "boolean"},
             "truth": {"type": ["object", "null"], "additionalProperties": False, "properties": truth},
@@ -59,6 +65,10 @@ def configuration_schema() -> dict[str, Any]:
         "required": [*general, *stages],
         "properties": {**general, **stages},
     }
+
+
+def _numbers(count: int) -> dict[str, Any]:
+    return {"type": "array", "items": {"type": "number"}, "minItems": count, "maxItems": count}
 
 
 def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) -> None:
@@ -120,7 +130,8 @@ def list_sequences(
     Returns
     -------
     dict of str to dict
-        `SEQUENCE_FILES`: paths or None; intrinsics: list of float or None; object: bool; depth_scale: float.
+        `SEQUENCE_FILES`: paths or None; intrinsics: list of float or None; object: bool; depth_scale: float;
+        depth_camera: dict or None.
 
     Raises
     ------
@@ -197,6 +208,7 @@ def _flatten(entry: Mapping[str, Any]) -> dict[str, Any]:
         "intrinsics": entry.get("intrinsics"),
         "object": entry.get("object", True),
         "depth_scale": truth.get("truth_depth_scale", _DEPTH_SCALE),
+        "depth_camera": truth.get("truth_depth_camera"),
     }
 
 
