@@ -70,7 +70,9 @@ def test_every_parameter_is_used_by_its_stage(stage, name):
     tree = ast.parse((ROOT / f"src/threedfs/stages/{stage}.py").read_text())
     whole = any(isinstance(n, ast.Name) and n.id == "params" and isinstance(n.ctx, ast.Load) for n in ast.walk(tree))
     used = {node.attr for node in ast.walk(tree) if isinstance(node, ast.Attribute)}
-    assert whole and (name in used or passes_params_on(tree)), f"{stage}.{name} does nothing"
+    before_the_run = f'["{stage}"]["{name}"]' in (ROOT / "src/threedfs/params/configuration.py").read_text()
+    used_there = name in used or passes_params_on(tree)
+    assert before_the_run or (whole and used_there), f"{stage}.{name} does nothing"
 
 
 def passes_params_on(tree: ast.AST) -> bool:
@@ -203,6 +205,37 @@ def test_absent_truth_of_a_present_sequence_is_missing_all_the_same(defaults, tm
     entry = {"source": "mug.mp4", "truth": {"masks": "masks"}}
     _, missing = load_sequences({**defaults, "skip_absent": True, "sequences": {"mug": entry}}, ROOT)
     assert missing["mug"].startswith("sequences.mug.truth.masks: expected a file or folder, found no masks")
+
+
+TRIED = {
+    "unknown": ({}, ["cup"], "expected names of sequences, got cup, which is none of them"),
+    "no cameras": ({"truth": {"depth": "mug.mp4"}}, ["mug"], "of mug, found no cameras and no truth.cameras; give"),
+    "no depth": (
+        {"cameras": "mug.mp4", "truth": {"cameras": "mug.mp4"}},
+        ["mug"],
+        "of mug, found no truth.depth; give",
+    ),
+    "nothing to do": ({"object": False}, [], r"sequences\.mug: expected its name in depth_experiment\.sequences"),
+}
+
+
+@pytest.mark.parametrize("case", TRIED)
+def test_sequences_that_cannot_take_part_in_the_depth_experiment_are_refused(defaults, case, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("mug.mp4").touch()
+    entry, tried, sentence = TRIED[case]
+    own = {"sequences": {"mug": {"source": "mug.mp4", **entry}}, "depth_experiment": {"sequences": tried}}
+    with pytest.raises(UserError, match=sentence):
+        load_sequences(merged(defaults, own), ROOT)
+
+
+def test_a_skipped_sequence_does_not_take_part_in_the_depth_experiment(defaults, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("mug.mp4").touch()
+    files = {"source": "mug.mp4", "cameras": "mug.mp4", "truth": {"cameras": "mug.mp4", "depth": "mug.mp4"}}
+    own = {"sequences": {"mug": files, "cup": {"source": "cup.mp4"}}, "skip_absent": True}
+    found, _ = load_sequences(merged(defaults, {**own, "depth_experiment": {"sequences": ["cup", "mug"]}}), ROOT)
+    assert {name: entry["depth_experiment"] for name, entry in found.items()} == {"mug": True}
 
 
 def test_what_a_sequence_does_not_state_has_its_default(defaults, tmp_path, monkeypatch):

@@ -49,7 +49,7 @@ class Run:
         metrics = self.folder / "metrics.csv"
         job = Job(Progress("evaluate", self.log))
         names = {"dataset": "box", "sequence": "ring", "method": "fused_sdf", "intrinsics": None}
-        names["depth_scale"] = changes.pop("depth_scale", 1000.0)
+        names |= {"depth_scale": changes.pop("depth_scale", 1000.0), "depth_camera": changes.pop("depth_camera", None)}
         evaluate.run(**{**self.inputs, **changes}, metrics=metrics, **names, params=params, job=job)
         found = {}
         for metric in read_metrics(metrics):

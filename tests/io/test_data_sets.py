@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from pathlib import Path
 
 import av
 import cv2
@@ -23,6 +24,7 @@ from threedfs.poses.given import find_cameras
 from threedfs.progress import Progress
 from threedfs.stages import frames as stage
 
+REDKITCHEN = Path(__file__).resolve().parents[3] / "shared" / "data" / "rgbd_redkitchen"
 SHAPE = (24, 32)
 COUNT = 4
 INTRINSICS = (570.3, 571.0, 15.5, 12.0)
@@ -73,9 +75,14 @@ def test_seven_scenes_in_one_folder(tmp_path):
 
 def test_seven_scenes_with_intrinsics_from_the_configuration(tmp_path):
     folder = write_seven_scenes(tmp_path / "seq-01", intrinsics=False)
-    with pytest.raises(UserError, match=r"expected intrinsics of the cameras either .* got none"):
+    with pytest.raises(UserError, match=r"expected intrinsics of the cameras, .* got none"):
         read_given_cameras(folder)
     check(read_images(folder, tmp_path), read_given_cameras(folder, INTRINSICS), folder, 1000.0)
+
+
+def test_intrinsics_from_the_configuration_go_before_those_of_the_folder(tmp_path):
+    folder = write_seven_scenes(tmp_path / "seq-01")
+    assert read_given_cameras(folder, (500.0, 501.0, 3.0, 4.0))[0].lens.camera.fy == 501
 
 
 def test_frames_that_the_tracker_lost_have_no_camera(tmp_path):
@@ -144,8 +151,6 @@ def test_refuses_poses_that_are_none(tmp_path):
     with pytest.raises(UserError, match="in line 1, got '1 0 0 0 here'"):
         read_given_cameras(poses, INTRINSICS)
     folder = write_seven_scenes(tmp_path / "seq-01")
-    with pytest.raises(UserError, match=r"intrinsics, got both"):
-        read_given_cameras(folder, INTRINSICS)
     (folder / "frame-000000.pose.txt").write_text("1 2 3")
     with pytest.raises(UserError, match=r"frame-000000.pose.txt: expected a 4x4 matrix"):
         read_given_cameras(folder)
@@ -163,3 +168,13 @@ def test_refuses_intrinsics_for_cameras_that_have_their_own(tmp_path):
 )
 def test_frames_are_chosen_evenly_spread(count, chosen):
     assert choose_spread("abcdefg", count) == list(chosen)
+
+
+@pytest.mark.skipif(not REDKITCHEN.is_dir(), reason="needs ../shared/data/rgbd_redkitchen beside the project")
+def test_redkitchen_is_read_in_place():
+    cameras = read_given_cameras(REDKITCHEN)
+    assert len(cameras) == 125 and cameras[0].lens.camera.fx == 585
+    depths = find_depth_images(REDKITCHEN, [camera.name for camera in cameras])
+    assert list(depths) == [camera.name for camera in cameras]
+    depth = read_depth_image(depths["frame-000000.color"], 1000.0)
+    assert depth.shape == (480, 640) and 0.4 < np.nanmin(depth) < np.nanmax(depth) < 5

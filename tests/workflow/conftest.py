@@ -36,12 +36,12 @@ SIGNATURES = {
     "evaluate": (
         "poses keyframes mesh masks depth frames masks_truth cameras_truth mesh_truth depth_truth",
         "metrics",
-        "dataset sequence method intrinsics depth_scale",
+        "dataset sequence method intrinsics depth_scale depth_camera",
     ),
     "depth_trial": (
         "undistorted keyframes edges poses masks_truth cameras_truth mesh_truth depth_truth",
         "trial",
-        "keyframe depth_settings depth_scale intrinsics",
+        "keyframe depth_settings depth_scale depth_camera intrinsics",
     ),
     "depth_experiment": ("trials", "metrics", "dataset sequence"),
     "collect": ("tables depth_tables", "metrics", ""),

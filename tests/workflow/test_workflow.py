@@ -153,6 +153,39 @@ def test_edited_object_films_its_takes_again_and_no_other(project):
     assert jobs_done(project.run(*order)) == Counter(render=1)
 
 
+def test_depth_experiment_tries_keyframes_that_have_a_true_depth_and_joins_the_table(project):
+    photos = project.folder / "photos"
+    photos.mkdir()
+    for name in ("000001.jpg", "000002.jpg", "000002.depth.png", "cameras.json"):
+        (photos / name).write_text(name)
+    truth = "{cameras: photos/cameras.json, depth: photos, depth_scale: 5000}"
+    entry = f"{{source: photos, cameras: photos/cameras.json, object: false, truth: {truth}}}"
+    (project.folder / "own.yaml").write_text(
+        f"dataset: own\nsequences: {{mug: {entry}}}\ndepth_experiment: {{sequences: [mug]}}\n"
+    )
+    output = project.run("--configfile", "own.yaml")
+    once = ("frames", "poses", "undistort", "keyframes", "edges", "depth_trial", "depth_experiment", "collect")
+    assert jobs_done(output) == Counter(once)
+    trial = json.loads((project.folder / "results/mug/12_depth_experiment/000002.zarr.zip").read_text())
+    assert trial["names"]["depth_scale"] == 5000 and trial["names"]["depth_settings"]["prior"] == "rotation_invariant"
+    assert "own,mug,depth/all" in (project.folder / "results/metrics.csv").read_text()
+    assert "Nothing to be done" in project.run("--configfile", "own.yaml")
+
+
+def test_a_sequence_added_to_the_depth_experiment_leaves_the_trials_of_others(project):
+    photos = project.folder / "photos"
+    photos.mkdir()
+    for name in ("000001.jpg", "000001.depth.png", "cameras.json"):
+        (photos / name).write_text(name)
+    files = "source: photos, cameras: photos/cameras.json, truth: {cameras: photos/cameras.json, depth: photos}"
+    both = f"dataset: own\nsequences: {{mug: {{{files}}}, cup: {{{files}, calibration: photos}}}}\n"
+    (project.folder / "own.yaml").write_text(both + "depth_experiment: {sequences: [mug]}\n")
+    assert jobs_done(project.run("--configfile", "own.yaml"))["depth_trial"] == 1
+    (project.folder / "own.yaml").write_text(both + "depth_experiment: {sequences: [mug, cup]}\n")
+    output = project.run("--configfile", "own.yaml")
+    assert jobs_done(output)["depth_trial"] == 1 and "Depth of mug" not in output
+
+
 def test_killed_run_goes_on_to_the_same_bytes(finished):
     whole = finished.artifacts()
     shutil.rmtree(finished.folder / "results")

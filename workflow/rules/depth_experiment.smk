@@ -31,6 +31,7 @@ rule depth_trial:
         labels=lambda wildcards: {
             "depth_settings": settings_of("depth"),
             "depth_scale": SEQUENCES[wildcards.sequence]["depth_scale"],
+            "depth_camera": SEQUENCES[wildcards.sequence]["depth_camera"],
             "intrinsics": SEQUENCES[wildcards.sequence]["intrinsics"],
         },
     message:

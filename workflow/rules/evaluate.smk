@@ -34,6 +34,7 @@ rule evaluate:
             "sequence": wildcards.sequence,
             "intrinsics": SEQUENCES[wildcards.sequence]["intrinsics"],
             "depth_scale": SEQUENCES[wildcards.sequence]["depth_scale"],
+            "depth_camera": SEQUENCES[wildcards.sequence]["depth_camera"],
         },
     message:
         "Measure {wildcards.sequence} by {wildcards.method}."

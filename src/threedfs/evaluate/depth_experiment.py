@@ -86,7 +86,12 @@ def bin_errors(pairs: DepthPairs, width: float) -> list[DepthBin]:
     pixels = np.bincount(index)
     squares = np.bincount(index, (pairs.depth - pairs.truth) ** 2)
     return [
-        DepthBin(number * width, (number + 1) * width, float(np.sqrt(squares[number] / pixels[number])), int(count))
+        DepthBin(
+            round(number * width, 9),
+            round((number + 1) * width, 9),
+            float(np.sqrt(squares[number] / pixels[number])),
+            int(count),
+        )
         for number, count in enumerate(pixels)
         if count
     ]
@@ -102,31 +107,29 @@ def experiment_figures(
     everywhere : mapping of str to DepthPairs
         All pixels with a true depth, by keyframe.
     regions : mapping of str to DepthPairs
-        Pixels of parts of the scene, of all keyframes together, by what is added to the names of their figures.
+        Pixels of parts of the scene, of all keyframes together, by what the names of their figures begin with.
     bin_width : float
         Intervals of true depth for which the error is given too.
     unit : str
         Of the depths.
     """
-    pooled = pool_pairs(list(everywhere.values()))
-    figures = [figure for name, pairs in everywhere.items() for figure in _error_figures(pairs, unit, "", name)]
-    figures += _error_figures(pooled, unit)
-    for region, pairs in regions.items():
-        figures += _error_figures(pairs, unit, f"_{region}")
-    for part in bin_errors(pooled, bin_width):
-        interval = f"in_{part.low:.2f}_{part.high:.2f}"
-        figures.append(Figure(f"depth_rmse_{interval}", part.rmse, unit))
-        figures.append(Figure(f"depth_pixels_{interval}", part.pixels, "px"))
+    figures = [figure for name, pairs in everywhere.items() for figure in _error_figures(pairs, unit, "depth", name)]
+    for region, pairs in {"depth": pool_pairs(list(everywhere.values())), **regions}.items():
+        figures += _error_figures(pairs, unit, region)
+        for part in bin_errors(pairs, bin_width):
+            interval = f"bin_{part.low:g}_{part.high:g}"
+            figures.append(Figure(f"{region}_rmse_{interval}", part.rmse, unit))
+            figures.append(Figure(f"{region}_pixels_{interval}", part.pixels, "px"))
     return figures
 
 
-def _error_figures(pairs: DepthPairs, unit: str, suffix: str = "", keyframe: str = "") -> list[Figure]:
+def _error_figures(pairs: DepthPairs, unit: str, region: str, keyframe: str = "") -> list[Figure]:
     error = measure_depth(pairs)
     if error is None:
         return []
     return [
-        Figure(f"depth_rmse{suffix}", error.rmse, unit, keyframe),
-        Figure(f"depth_mean_relative_error{suffix}", 100 * error.mean, "%", keyframe),
-        Figure(f"depth_within_1{suffix}", 100 * error.within_1, "%", keyframe),
-        Figure(f"depth_within_10{suffix}", 100 * error.within_10, "%", keyframe),
+        Figure(f"{region}_rmse", error.rmse, unit, keyframe),
+        Figure(f"{region}_error_mean", 100 * error.mean, "%", keyframe),
+        Figure(f"{region}_within_1", 100 * error.within_1, "%", keyframe),
+        Figure(f"{region}_within_10", 100 * error.within_10, "%", keyframe),
     ]

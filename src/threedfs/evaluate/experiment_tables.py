@@ -14,7 +14,11 @@ from threedfs.evaluate.scores import Scores
 from threedfs.evaluate.sequence_rows import INTERVAL_NOTE, Column, SequenceRows, format_mean, pick
 from threedfs.evaluate.table import Table
 
-REGIONS = {"depth": "all pixels with a true depth", "object_depth": "pixels of the object"}
+REGIONS = {
+    "depth": "all pixels with a true depth",
+    "object_depth": "pixels of the object",
+    "object_range_depth": "all pixels at depths of the object",
+}
 """Where depth is measured: how the names of figures begin, and what that stands for."""
 
 

@@ -63,7 +63,8 @@ def read_given_cameras(path: Path, intrinsics: Intrinsics | None = None) -> tupl
     ----------
     path : Path
     intrinsics : tuple of float, optional
-        fx, fy, cx, cy in pixels of the source, integer pixel centres, for poses that come without any.
+        fx, fy, cx, cy in pixels of the source, integer pixel centres, for poses that come without any, or with those
+        of another camera (the depth camera's): they go before camera-intrinsics.txt.
 
     Raises
     ------
@@ -100,11 +101,10 @@ def _read_poses(path: Path) -> tuple[dict[str, np.ndarray], Intrinsics | None]:
 def _join(
     path: Path, poses: Mapping[str, np.ndarray], stated: Intrinsics | None, given: Intrinsics | None
 ) -> list[GivenCamera]:
-    if (stated is None) == (given is None):
+    if stated is None and given is None:
         raise UserError(
-            f"{path}: expected intrinsics of the cameras either in camera-intrinsics.txt beside the poses or by the "
-            f"sequence's key intrinsics, got {'none' if given is None else 'both'}; a Kinect's are about "
-            "[570, 570, 320, 240]."
+            f"{path}: expected intrinsics of the cameras, in camera-intrinsics.txt beside the poses or by the "
+            "sequence's key intrinsics, got none; those of a Kinect's colour camera are about [525, 525, 320, 240]."
         )
     lens = Lens(Camera(0, 0, *map(float, given or stated)))
     return [GivenCamera(name, None, lens, _rigid_inverse(pose)) for name, pose in poses.items()]

@@ -11,6 +11,9 @@ from pathlib import Path
 from threedfs.errors import UserError
 from threedfs.io.atomic import atomic
 
+DEPTH_METHODS = "depth/"
+"""How methods of the depth experiment begin, to tell them from those that cut out an object."""
+
 
 @dataclass(frozen=True)
 class Metric:

@@ -22,6 +22,12 @@ def configuration_schema() -> dict[str, Any]:
     """Return the JSON schema of the configuration."""
     truth = {name: _PATH for name in ("masks", "cameras", "mesh", "depth")}
     truth["depth_scale"] = {"type": "number", "exclusiveMinimum": 0}
+    truth["depth_camera"] = {
+        "type": ["object", "null"],
+        "additionalProperties": False,
+        "required": ["intrinsics", "offset"],
+        "properties": {"intrinsics": _numbers(4), "offset": _numbers(3)},
+    }
     sequence = {
         "type": "object",
         "additionalProperties": False,
@@ -30,7 +36,7 @@ def configuration_schema() -> dict[str, Any]:
             "dataset": _DATASET,
             **RENDERED_KEYS,
             "cameras": _PATH,
-            "intrinsics": {"type": ["array", "null"], "items": {"type": "number"}, "minItems": 4, "maxItems": 4},
+            "intrinsics": {**_numbers(4), "type": ["array", "null"]},
             "calibration": _PATH,
             "object": {"type": "boolean"},
             "truth": {"type": ["object", "null"], "additionalProperties": False, "properties": truth},
@@ -56,6 +62,10 @@ def configuration_schema() -> dict[str, Any]:
         "required": [*general, *stages],
         "properties": {**general, **stages},
     }
+
+
+def _numbers(count: int) -> dict[str, Any]:
+    return {"type": "array", "items": {"type": "number"}, "minItems": count, "maxItems": count}
 
 
 def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) -> None:

@@ -32,7 +32,7 @@ video: null
 #     intrinsics: null              # [fx, fy, cx, cy], for given cameras that are poses alone
 #     calibration: null             # photos or a video of a checkerboard
 #     object: true                  # false: no object is looked for, only the depth experiment runs
-#     truth: {masks: null, cameras: null, mesh: null, depth: null, depth_scale: 1000}
+#     truth: {masks: null, cameras: null, mesh: null, depth: null, depth_scale: 1000, depth_camera: null}
 #   dragon:
 #     rendered: dragon              # a take of the synthetic data set, with its truth
 sequences: {}
@@ -89,7 +89,8 @@ _KEYS = {
     "`cam_to_world`, a folder of CONTOUR projection matrices or of `NAME.pose.txt` (7-Scenes, 3DMatch), or a pose file "
     "of RGB-D Scenes v2; null: structure from motion",
     "sequences.<name>.intrinsics": "[fx, fy, cx, cy] in pixels of the source, the first pixel's centre at (0, 0), for "
-    "given and true cameras that are poses alone: RGB-D Scenes v2, and `NAME.pose.txt` without `camera-intrinsics.txt`",
+    "given and true cameras that are poses alone: RGB-D Scenes v2, and `NAME.pose.txt`, where it takes the place of "
+    "`camera-intrinsics.txt`",
     "sequences.<name>.calibration": "photos or a video of a checkerboard; null: the camera calibrates itself",
     "sequences.<name>.rendered": "instead of all of the above and below: a take of the synthetic data set Tabletop-12 "
     "(config/datasets/tabletop12.yaml), filmed by the run with all its truth",
@@ -104,6 +105,9 @@ _KEYS = {
     "sequences.<name>.truth.depth": "folder of true depth images, `NAME.depth.png` or `NNNNN-depth.png`",
     "sequences.<name>.truth.depth_scale": "their units per unit of the true cameras (default 1000: millimetres and "
     "metres)",
+    "sequences.<name>.truth.depth_camera": "for depth images that are not registered to the colour images: "
+    "{intrinsics: [fx, fy, cx, cy], offset: [x, y, z]} of the depth camera, its place in the colour camera's axes in "
+    "units of the true cameras; null: both images are of one camera",
     "skip_absent": "go on without the sequences whose source is absent; they are named at the start",
     "methods": "how the object is cut out: `fused_sdf`",
     "seed": "of every random choice",

@@ -11,7 +11,7 @@ from threedfs.evaluate.depth_error import DepthPairs, pair_depths, pool_pairs
 from threedfs.evaluate.depth_experiment import experiment_figures, find_object_depths
 from threedfs.evaluate.figures import Figure
 from threedfs.io.depth_trials import DepthTrial, read_depth_trial
-from threedfs.io.metrics import Metric, write_metrics
+from threedfs.io.metrics import DEPTH_METHODS, Metric, write_metrics
 from threedfs.job import Job
 from threedfs.params.depth_experiment import DepthExperimentParams
 
@@ -40,7 +40,7 @@ def run(
     read = {path.name.removesuffix(".zarr.zip"): read_depth_trial(path) for path in trials}
     methods = next(iter(read.values())).methods
     table = [
-        Metric(item.name, item.value, item.unit, dataset, sequence, f"depth/{method}", item.keyframe)
+        Metric(item.name, item.value, item.unit, dataset, sequence, f"{DEPTH_METHODS}{method}", item.keyframe)
         for number, method in enumerate(methods)
         for item in _score(read, number, params)
     ]
@@ -55,8 +55,8 @@ def _score(trials: dict[str, DepthTrial], number: int, params: DepthExperimentPa
     if any(mask.any() for mask in on_object.values()):
         near = {name: find_object_depths(trial.truth, trial.on_object) for name, trial in trials.items()}
         regions = {
-            "on_object": _pool(trials, number, on_object),
-            "at_object_depths": _pool(trials, number, near),
+            "object_depth": _pool(trials, number, on_object),
+            "object_range_depth": _pool(trials, number, near),
         }
     return experiment_figures(everywhere, regions, params.bin_width, "truth unit")
 

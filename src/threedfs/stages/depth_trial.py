@@ -19,6 +19,7 @@ from threedfs.evaluate.depth_experiment import draw_measurements
 from threedfs.evaluate.interpolation import interpolate_depth
 from threedfs.evaluate.masks import check_mask_size
 from threedfs.evaluate.pose_error import align_poses
+from threedfs.evaluate.registration import register_depth
 from threedfs.evaluate.rendering import MeshRenderer, filmed_pixels, image_points, sample_nearest
 from threedfs.frames.masks import match_masks
 from threedfs.io.depth_maps import read_edges
@@ -52,6 +53,7 @@ def run(
     keyframe: str,
     depth_settings: Mapping[str, Any],
     depth_scale: float,
+    depth_camera: Mapping[str, Sequence[float]] | None,
     intrinsics: Sequence[float] | None,
     params: DepthTrialParams,
     job: Job,
@@ -73,7 +75,8 @@ def run(
         [view.cam_from_world for view in common], [true_cameras[view.name].cam_from_world for view in common]
     )
     pixels = filmed_pixels(entry.view.camera, solved.distortion, frames.source_shape)
-    truth = _read_truth(depth_truth, depth_scale, keyframe, pixels, frames)
+    image = _read_depth(depth_truth, depth_scale, depth_camera, keyframe, true_cameras, frames)
+    truth = np.where(frames.valid, sample_nearest(image, pixels, np.nan), np.nan)
     drawn = draw_measurements(
         truth, max(params.measurements), np.random.default_rng([job.seed, zlib.crc32(keyframe.encode())])
     )
@@ -115,11 +118,22 @@ def _read_cameras(path: Path, intrinsics: Sequence[float] | None, frames: FrameS
     return {frames.names[number]: camera for number, camera in found.items()}
 
 
-def _read_truth(folder: Path, scale: float, keyframe: str, pixels: np.ndarray, frames: FrameStore) -> np.ndarray:
+def _read_depth(
+    folder: Path,
+    scale: float,
+    depth_camera: Mapping[str, Sequence[float]] | None,
+    keyframe: str,
+    cameras: Mapping[str, GivenCamera],
+    frames: FrameStore,
+) -> np.ndarray:
+    """Read the true depth image of a keyframe, in the geometry of the source frames."""
     file = find_depth_images(folder, [keyframe])[keyframe]
     image = read_depth_image(file, scale)
+    if depth_camera is not None and keyframe in cameras:
+        camera = state_size(cameras[keyframe].lens, frames.source_shape).camera
+        image = register_depth(image, **depth_camera, colour=camera)
     check_mask_size(image, frames.source_shape, str(file))
-    return np.where(frames.valid, sample_nearest(image, pixels, np.nan), np.nan)
+    return image
 
 
 def _find_object(

@@ -23,6 +23,7 @@ from threedfs.evaluate.figures import (
 from threedfs.evaluate.masks import check_mask_size, intersection_over_union
 from threedfs.evaluate.mesh_error import is_closed, measure_mesh
 from threedfs.evaluate.pose_error import align_poses, measure_poses
+from threedfs.evaluate.registration import register_depth
 from threedfs.evaluate.rendering import MeshRenderer, filmed_pixels, image_points, sample_nearest
 from threedfs.frames.masks import find_masks
 from threedfs.frames.picture import name_video_frame
@@ -74,6 +75,7 @@ def run(
     method: str,
     intrinsics: Sequence[float] | None,
     depth_scale: float,
+    depth_camera: Mapping[str, Sequence[float]] | None,
     params: EvaluateParams,
     job: Job,
 ) -> None:
@@ -107,7 +109,7 @@ def run(
         error = measure_mesh(aligned, exact, params.mesh_thresholds, params.surface_samples, generator)
         figures += mesh_figures(error)
     if depth_truth is not None:
-        figures += _score_depth_by_images(depth_truth, depth_scale, maps, truth, selected, solved, store)
+        figures += _score_depth_by_images(depth_truth, depth_scale, depth_camera, maps, truth, selected, solved, store)
     figures.append(Figure("mesh_closed", float(is_closed(surface)), "1"))
     if sequence in params.cylinder_sequences:
         figures += cylinder_figures(measure_cylinder(surface, params.surface_samples, generator))
@@ -204,6 +206,7 @@ def _score_depth_by_mesh(
 def _score_depth_by_images(
     folder: Path,
     scale: float,
+    depth_camera: Mapping[str, Sequence[float]] | None,
     maps: Mapping[str, Path],
     truth: _Truth,
     selected: Mapping[str, Keyframe],
@@ -213,6 +216,8 @@ def _score_depth_by_images(
     pairs: dict[str, DepthPairs] = {}
     for name, file in find_depth_images(folder, selected).items():
         image = read_depth_image(file, scale)
+        if depth_camera is not None and name in truth.seen:
+            image = register_depth(image, **depth_camera, colour=truth.seen[name][0].camera)
         check_mask_size(image, store.source_shape, str(file))
         pixels = filmed_pixels(selected[name].view.camera, solved.distortion, store.source_shape)
         estimated = truth.from_scene.scale * read_depth_map(maps[name]).depth

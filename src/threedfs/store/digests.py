@@ -100,7 +100,10 @@ class InputDigests:
         if isinstance(value, list):
             return [[path.name, self.any(path)] for path in value]
         if keyframe is not None and value.suffix == ".json" and value.is_file():
-            content = json.loads(value.read_text(encoding="utf-8"))
+            try:
+                content = json.loads(value.read_text(encoding="utf-8"))
+            except ValueError:
+                content = None  # a user's file that is no JSON: the stage says so
             if isinstance(content, dict) and content.get("schema") == KEYFRAMES:
                 return digest_value(content["keyframes"].get(keyframe))
         return self.any(value)
