@@ -1,6 +1,6 @@
 """The tables of the depth experiment: priors and interpolation, by number of measurements, given the poses.
 
-Its rows in the table of metrics have methods `depth/PRIOR/COUNT`, and figures of three regions, whole and by true depth.
+Its rows in the table of metrics have methods `depth/PRIOR/COUNT`, and figures of three regions, whole and by depth.
 """
 
 from __future__ import annotations
