@@ -5,7 +5,7 @@ import inspect
 import numpy as np
 
 from threedfs.depth.evidence import gather_evidence
-from threedfs.depth.measurements import merge_measurements
+from threedfs.depth.measurements import distrust_unmatched, merge_measurements
 from threedfs.depth.solver import optimise_depth
 from threedfs.params.depth import DepthParams, matching_settings, solver_settings
 
@@ -26,3 +26,9 @@ def test_every_setting_is_taken_by_whom_it_is_handed_to():
     params = DepthParams()
     assert set(matching_settings(params)) <= set(inspect.signature(gather_evidence).parameters)
     assert set(solver_settings(params)) <= set(inspect.signature(optimise_depth).parameters)
+
+
+def test_photometric_error_counts_less_without_a_match():
+    """Exact: a share where there is no match, untouched where there is one."""
+    found = distrust_unmatched(np.array([[0.8, 0.8]]), np.array([[np.nan, 1.2]]), 0.25)
+    np.testing.assert_allclose(found, [[0.2, 0.8]])

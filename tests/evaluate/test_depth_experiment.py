@@ -7,7 +7,7 @@ from threedfs.errors import UserError
 from threedfs.evaluate.depth_error import DepthPairs
 from threedfs.evaluate.depth_experiment import bin_errors, draw_measurements, experiment_figures, find_object_depths
 from threedfs.evaluate.interpolation import interpolate_depth
-from threedfs.evaluate.registration import register_depth
+from threedfs.geometry.registration import register_depth
 from threedfs.types import Camera
 
 SHAPE = (30, 40)

@@ -29,3 +29,11 @@ def merge_measurements(
     total = precision.sum(axis=0)
     with np.errstate(divide="ignore", invalid="ignore"):
         return (precision * np.nan_to_num(maps)).sum(axis=0) / total, np.where(total > 0, 1 / total, np.nan)
+
+
+def distrust_unmatched(confidence: np.ndarray, stereo: np.ndarray, trust: float) -> np.ndarray:
+    """Lower the confidence (H, W) in the photometric error to a share where stereo (H, W) found no match (NaN).
+
+    Beyond the paper: where slanted patches match nowhere, patches parallel to the image match by chance.
+    """
+    return np.where(np.isnan(stereo), trust * confidence, confidence)

@@ -141,7 +141,23 @@ def compare_depth(
 def count_agreeing(
     views: Sequence[View], read_depth: Callable[[int], np.ndarray], rank: int, *, tolerance: float, max_views: int
 ) -> np.ndarray:
-    """Count the views whose depth maps have a surface where that of one view has one, (H, W) uint8."""
+    """Count the views whose depth maps have a surface where that of one view has one.
+
+    Parameters
+    ----------
+    views, read_depth
+        As for `compare_depth`.
+    rank : int
+        The one view.
+    tolerance : float
+        Relative difference in depth up to which two surfaces are the same.
+    max_views : int
+        It is compared with at most so many others, those whose optical axes are nearest in direction.
+
+    Returns
+    -------
+    (H, W) uint8
+    """
     shape = views[rank].camera.shape
     rule = ComparisonRule(tolerance, max_views, 0.0)
     (agreement,) = compare_depth(views, read_depth, lambda _: np.zeros(shape, bool), rule, targets=[rank])

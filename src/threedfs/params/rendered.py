@@ -6,14 +6,13 @@ from collections.abc import Mapping
 from typing import Any
 
 from threedfs.errors import UserError
-from threedfs.synthetic.takes import take_module
+from threedfs.synthetic.takes import DEPTH_SCALE, take_module
 
 RENDERED_KEYS = {"rendered": {"type": ["string", "null"]}, "true_cameras": {"type": "boolean"}}
 """JSON schema of the keys of a rendered sequence."""
 
 _BROUGHT = ("source", "cameras", "intrinsics", "calibration", "truth")
 _TRUTH = {"masks": "masks", "cameras": "cameras.json", "mesh": "mesh.ply", "depth": "depth"}
-_DEPTH_SCALE = 10000.0  # levels of a true depth image in a metre
 
 
 def bring_render(name: str, entry: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -55,5 +54,5 @@ def bring_render(name: str, entry: Mapping[str, Any]) -> Mapping[str, Any]:
         **entry,
         "source": f"{folder}/video.mp4",
         "cameras": f"{folder}/cameras.json" if entry.get("true_cameras") else None,
-        "truth": {key: f"{folder}/{file}" for key, file in _TRUTH.items()} | {"depth_scale": _DEPTH_SCALE},
+        "truth": {key: f"{folder}/{file}" for key, file in _TRUTH.items()} | {"depth_scale": DEPTH_SCALE},
     }

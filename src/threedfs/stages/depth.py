@@ -8,7 +8,7 @@ import cv2
 import numpy as np
 
 from threedfs.depth.evidence import gather_evidence
-from threedfs.depth.measurements import merge_measurements
+from threedfs.depth.measurements import distrust_unmatched, merge_measurements
 from threedfs.depth.solver import optimise_depth
 from threedfs.depth.weights import edge_weight, measurement_weight
 from threedfs.io.depth_maps import DepthMap, read_edges, read_semidense, read_stereo, write_depth_map
@@ -48,7 +48,7 @@ def run(
     if stereo is not None:
         matched = read_stereo(stereo).inverse_depth.astype(np.float64)
         inverse_depth, variance = merge_measurements(inverse_depth, variance, matched, params.stereo_deviation)
-        confidence = np.where(np.isnan(matched), params.unmatched_trust * confidence, confidence)
+        confidence = distrust_unmatched(confidence, matched, params.unmatched_trust)
     solution = optimise_depth(
         evidence.cost_volume,
         evidence.candidates,

@@ -19,7 +19,6 @@ from threedfs.evaluate.depth_experiment import draw_measurements
 from threedfs.evaluate.interpolation import interpolate_depth
 from threedfs.evaluate.masks import check_mask_size
 from threedfs.evaluate.pose_error import align_poses
-from threedfs.evaluate.registration import register_depth
 from threedfs.evaluate.rendering import MeshRenderer, filmed_pixels, image_points, sample_nearest
 from threedfs.frames.masks import match_masks
 from threedfs.io.depth_maps import read_edges
@@ -30,7 +29,7 @@ from threedfs.io.images import read_mask
 from threedfs.io.keyframes import read_keyframe
 from threedfs.io.meshes import read_mesh
 from threedfs.io.poses import read_poses
-from threedfs.io.truth import read_depth_image
+from threedfs.io.truth import read_true_depth
 from threedfs.io.truth_files import find_depth_images
 from threedfs.job import Job
 from threedfs.params.depth import DepthParams, matching_settings, solver_settings
@@ -75,7 +74,10 @@ def run(
         [view.cam_from_world for view in common], [true_cameras[view.name].cam_from_world for view in common]
     )
     pixels = filmed_pixels(entry.view.camera, solved.distortion, frames.source_shape)
-    image = _read_depth(depth_truth, depth_scale, depth_camera, keyframe, true_cameras, frames)
+    filmed = true_cameras.get(keyframe)
+    colour = None if filmed is None else state_size(filmed.lens, frames.source_shape).camera
+    file = find_depth_images(depth_truth, [keyframe])[keyframe]
+    image = read_true_depth(file, depth_scale, frames.source_shape, depth_camera, colour)
     truth = np.where(frames.valid, sample_nearest(image, pixels, np.nan), np.nan)
     drawn = draw_measurements(
         truth, max(params.measurements), np.random.default_rng([job.seed, zlib.crc32(keyframe.encode())])
@@ -116,24 +118,6 @@ def _read_cameras(path: Path, intrinsics: Sequence[float] | None, frames: FrameS
     cameras = read_given_cameras(path, intrinsics)
     found = find_cameras(cameras, frames.names, frames.indices, numbered=frames.ordered)
     return {frames.names[number]: camera for number, camera in found.items()}
-
-
-def _read_depth(
-    folder: Path,
-    scale: float,
-    depth_camera: Mapping[str, Sequence[float]] | None,
-    keyframe: str,
-    cameras: Mapping[str, GivenCamera],
-    frames: FrameStore,
-) -> np.ndarray:
-    """Read the true depth image of a keyframe, in the geometry of the source frames."""
-    file = find_depth_images(folder, [keyframe])[keyframe]
-    image = read_depth_image(file, scale)
-    if depth_camera is not None and keyframe in cameras:
-        camera = state_size(cameras[keyframe].lens, frames.source_shape).camera
-        image = register_depth(image, **depth_camera, colour=camera)
-    check_mask_size(image, frames.source_shape, str(file))
-    return image
 
 
 def _find_object(

@@ -23,7 +23,6 @@ from threedfs.evaluate.figures import (
 from threedfs.evaluate.masks import check_mask_size, intersection_over_union
 from threedfs.evaluate.mesh_error import is_closed, measure_mesh
 from threedfs.evaluate.pose_error import align_poses, measure_poses
-from threedfs.evaluate.registration import register_depth
 from threedfs.evaluate.rendering import MeshRenderer, filmed_pixels, image_points, sample_nearest
 from threedfs.frames.masks import find_masks
 from threedfs.frames.picture import name_video_frame
@@ -36,7 +35,7 @@ from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
 from threedfs.io.metrics import Metric, write_metrics
 from threedfs.io.poses import Poses, read_poses
-from threedfs.io.truth import read_depth_image
+from threedfs.io.truth import read_true_depth
 from threedfs.io.truth_files import find_depth_images
 from threedfs.job import Job
 from threedfs.object.silhouettes import draw_source_silhouette
@@ -215,10 +214,8 @@ def _score_depth_by_images(
 ) -> list[Figure]:
     pairs: dict[str, DepthPairs] = {}
     for name, file in find_depth_images(folder, selected).items():
-        image = read_depth_image(file, scale)
-        if depth_camera is not None and name in truth.seen:
-            image = register_depth(image, **depth_camera, colour=truth.seen[name][0].camera)
-        check_mask_size(image, store.source_shape, str(file))
+        colour = truth.seen[name][0].camera if name in truth.seen else None
+        image = read_true_depth(file, scale, store.source_shape, depth_camera, colour)
         pixels = filmed_pixels(selected[name].view.camera, solved.distortion, store.source_shape)
         estimated = truth.from_scene.scale * read_depth_map(maps[name]).depth
         pairs[name] = pair_depths(estimated, sample_nearest(image, pixels, np.nan))

@@ -11,6 +11,7 @@ from threedfs.io.depth_maps import StereoMap, read_stereo, write_stereo
 from threedfs.io.keyframes import read_keyframes
 from threedfs.job import Job
 from threedfs.params.stereo_check import StereoCheckParams
+from threedfs.stereo.confirm import confirm_matches
 
 
 def run(
@@ -33,14 +34,14 @@ def run(
     rank = [view.name for view in views].index(keyframe)
     agreeing = count_agreeing(views, read_depth, rank, tolerance=params.depth_tolerance, max_views=params.max_views)
     own = read_stereo(paths[keyframe])
-    kept = (own.cost <= params.max_cost) & (agreeing >= params.min_agreeing)
-    job.progress.note(f"{keyframe}: {100 * kept.mean():.0f} % of the pixels have a match that others confirm")
-    write_stereo(
-        checked,
-        StereoMap(
-            np.where(kept, own.inverse_depth, np.nan),
-            np.where(kept[..., None], own.slope, np.nan),
-            own.cost,
-        ),
-        job.header,
+    inverse_depth, slope = confirm_matches(
+        own.inverse_depth,
+        own.slope,
+        own.cost,
+        agreeing,
+        max_cost=params.max_cost,
+        min_agreeing=params.min_agreeing,
     )
+    share = 100 * np.isfinite(inverse_depth).mean()
+    job.progress.note(f"{keyframe}: {share:.0f} % of the pixels have a match that others confirm")
+    write_stereo(checked, StereoMap(inverse_depth, slope, own.cost), job.header)

@@ -82,6 +82,12 @@ def match_patches(
     rounds : int
         Sweeps over the coarsest level; half as many on each finer one, at least one.
     seed : int
+    note : callable
+        Takes a message to report progress.
+
+    Returns
+    -------
+    PatchMatch
 
     Notes
     -----

@@ -55,7 +55,20 @@ def weigh_patch(reference, u, v, offsets, falloff, variance_floor, least_varianc
 
 @njit(cache=True)
 def view_cost(image, infinity, epipole, u, v, plane, offsets, patch, inverse_deviation, variance_floor):
-    """Compare a weighed patch with one neighbour: (1 - NCC) / 2 in [0, 1], or -1 where it is not seen there."""
+    """Compare a weighed patch with one neighbour: (1 - NCC) / 2 in [0, 1], or -1 where it is not seen there.
+
+    Parameters
+    ----------
+    image : (H, W) float32
+    infinity, epipole : (3, 3) and (3,) float64
+    u, v : int, pixel of the reference
+    plane : (3,) float64
+        Inverse depth at the pixel, and its change along columns and rows.
+    offsets : (S, 2) int64
+    patch : (weights, values), each (S,) float64
+    inverse_deviation, variance_floor : float
+        As `weigh_patch` returns and takes them.
+    """
     height, width = image.shape
     weights, values = patch
     w, gu, gv = plane[0], plane[1], plane[2]

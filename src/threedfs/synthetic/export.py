@@ -16,11 +16,9 @@ from threedfs.io.meshes import write_mesh
 from threedfs.progress import Progress
 from threedfs.synthetic.film import Film, map_forked, shoot_all
 from threedfs.synthetic.render import Renderer
+from threedfs.synthetic.takes import DEPTH_SCALE
 from threedfs.synthetic.video import write_video
 from threedfs.types import View
-
-# Levels of a depth image in a scene unit: a level is 0.1 mm, and the largest depth 6.5 m.
-DEPTH_SCALE = 10000.0
 
 
 @dataclass(frozen=True)

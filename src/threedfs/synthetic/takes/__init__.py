@@ -14,6 +14,9 @@ from threedfs.errors import UserError
 if TYPE_CHECKING:
     from threedfs.synthetic.tabletop import Take
 
+DEPTH_SCALE = 10000.0
+"""Levels of a true depth image in a scene unit: a level is 0.1 mm, and the largest depth 6.5 m."""
+
 
 def list_takes() -> tuple[str, ...]:
     """Return the names of all takes, sorted."""
