@@ -39,6 +39,7 @@ rule all:
 
 onstart:
     refuse_missing()
+    look_on_demand()
 
 
 onsuccess:

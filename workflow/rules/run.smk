@@ -13,6 +13,16 @@ def refuse_missing():
         sys.exit(f"threedfs: {next(iter(MISSING.values()))}")
 
 
+def look_on_demand():
+    """Let Snakemake look for the next job when one ends and only then, where jobs run on this machine.
+
+    Its limit on submissions starts a timer at every look, and each timer ends in a look (as of 9.27): after n jobs it
+    looks n times a second, which takes most of a core from the jobs.
+    """
+    if workflow.executor_plugin.common_settings.local_exec:
+        workflow.scheduler.job_rate_limiter = None
+
+
 def finish(unfinished=()):
     """Write tables and plots and say how the run went; `unfinished` are outputs that it should have made."""
     from threedfs.run_end.finish import Run, finish_run
