@@ -18,12 +18,12 @@ def random_weight(seed=0, shape=SHAPE):
 
 
 def sparse_matrix(stencil):
-    height, width = stencil.shape[:2]
+    height, width = stencil.shape[1:]
     index = np.arange(height * width).reshape(height, width)
     rows, columns, values = [], [], []
     for k, (dv, du) in enumerate(HALF_OFFSETS):
-        v, u = np.nonzero(stencil[..., k])
-        here, there, value = index[v, u], index[v + dv, u + du], stencil[v, u, k]
+        v, u = np.nonzero(stencil[k])
+        here, there, value = index[v, u], index[v + dv, u + du], stencil[k, v, u]
         rows += [here] if k == 0 else [here, there]
         columns += [there] if k == 0 else [there, here]
         values += [value] if k == 0 else [value, value]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from threedfs.depth.search import search_depth
+from threedfs.depth.search import cheapest_depth, search_depth
 
 
 def test_search_equals_the_argmin_of_the_energy():
@@ -49,3 +49,10 @@ def test_the_median_removes_an_outlier():
     depth = np.full((7, 7), 1.5)
     assert search_depth(cost, candidates, depth, median_size=1, **settings)[3, 3] > 1.8
     assert abs(search_depth(cost, candidates, depth, median_size=3, **settings)[3, 3] - 1.3) < 1e-6
+
+
+def test_cheapest_depth_is_the_candidate_of_least_cost():
+    """Oracle: against numpy, with ties."""
+    rng = np.random.default_rng(3)
+    cost, candidates = rng.integers(0, 5, (7, 20, 30)).astype(np.float32), np.linspace(1, 2, 7)
+    np.testing.assert_allclose(cheapest_depth(cost, candidates), candidates[cost.argmin(axis=0)], rtol=1e-7)

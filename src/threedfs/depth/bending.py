@@ -32,7 +32,7 @@ _ORDER = {"first_order": 1, "second_order": 2, "rotation_invariant": 3}
 
 
 def assemble_prior(weight: np.ndarray, prior: str) -> np.ndarray:
-    """Assemble the half stencil of a smoothness prior.
+    """Assemble the half stencil of a smoothness prior, one plane for each of its coefficients.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ def assemble_prior(weight: np.ndarray, prior: str) -> np.ndarray:
 
     Returns
     -------
-    (H, W, 13) float64
+    (13, H, W) float64
         Coefficients in the order of `HALF_OFFSETS` of the matrix whose quadratic form is the energy.
     """
     return _assemble(np.ascontiguousarray(weight, np.float64), _ORDER[prior])
@@ -102,46 +102,46 @@ def release_bends(depth: np.ndarray, tolerated: float, prior: str) -> np.ndarray
 @njit(cache=True)
 def _assemble(weight, order):
     height, width = weight.shape
-    stencil = np.zeros((height, width, 13))
+    planes = np.zeros((13, height, width))
     for v in range(height):
         for u in range(width):
             if order == 1:
                 if u + 1 < width:
                     w = min(weight[v, u], weight[v, u + 1])
-                    stencil[v, u, 0] += w
-                    stencil[v, u + 1, 0] += w
-                    stencil[v, u, 1] -= w
+                    planes[0, v, u] += w
+                    planes[0, v, u + 1] += w
+                    planes[1, v, u] -= w
                 if v + 1 < height:
                     w = min(weight[v, u], weight[v + 1, u])
-                    stencil[v, u, 0] += w
-                    stencil[v + 1, u, 0] += w
-                    stencil[v, u, 5] -= w
+                    planes[0, v, u] += w
+                    planes[0, v + 1, u] += w
+                    planes[5, v, u] -= w
                 continue
             w = weight[v, u]
             if 0 < u < width - 1:
-                stencil[v, u - 1, 0] += w
-                stencil[v, u, 0] += 4 * w
-                stencil[v, u + 1, 0] += w
-                stencil[v, u - 1, 1] -= 2 * w
-                stencil[v, u, 1] -= 2 * w
-                stencil[v, u - 1, 2] += w
+                planes[0, v, u - 1] += w
+                planes[0, v, u] += 4 * w
+                planes[0, v, u + 1] += w
+                planes[1, v, u - 1] -= 2 * w
+                planes[1, v, u] -= 2 * w
+                planes[2, v, u - 1] += w
             if 0 < v < height - 1:
-                stencil[v - 1, u, 0] += w
-                stencil[v, u, 0] += 4 * w
-                stencil[v + 1, u, 0] += w
-                stencil[v - 1, u, 5] -= 2 * w
-                stencil[v, u, 5] -= 2 * w
-                stencil[v - 1, u, 10] += w
+                planes[0, v - 1, u] += w
+                planes[0, v, u] += 4 * w
+                planes[0, v + 1, u] += w
+                planes[5, v - 1, u] -= 2 * w
+                planes[5, v, u] -= 2 * w
+                planes[10, v - 1, u] += w
             if order == 3 and u + 1 < width and v + 1 < height:
                 w = 2 * min(min(weight[v, u], weight[v, u + 1]), min(weight[v + 1, u], weight[v + 1, u + 1]))
-                stencil[v, u, 0] += w
-                stencil[v, u + 1, 0] += w
-                stencil[v + 1, u, 0] += w
-                stencil[v + 1, u + 1, 0] += w
-                stencil[v, u, 1] -= w
-                stencil[v + 1, u, 1] -= w
-                stencil[v, u, 5] -= w
-                stencil[v, u + 1, 5] -= w
-                stencil[v, u, 6] += w
-                stencil[v, u + 1, 4] += w
-    return stencil
+                planes[0, v, u] += w
+                planes[0, v, u + 1] += w
+                planes[0, v + 1, u] += w
+                planes[0, v + 1, u + 1] += w
+                planes[1, v, u] -= w
+                planes[1, v + 1, u] -= w
+                planes[5, v, u] -= w
+                planes[5, v, u + 1] -= w
+                planes[6, v, u] += w
+                planes[4, v, u + 1] += w
+    return planes

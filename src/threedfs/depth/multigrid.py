@@ -50,25 +50,26 @@ def coarsen_prior(weight: np.ndarray, prior: str) -> list[Level]:
 
 def coarsen_diagonal(diagonal: np.ndarray) -> list[Level]:
     """Coarsen a diagonal matrix (H, W) of a padded shape by Galerkin products, fine first."""
-    stencil = np.zeros((*diagonal.shape, 13))
-    stencil[..., 0] = diagonal
-    return _coarsen(stencil, 1.0)
+    planes = np.zeros((13, *diagonal.shape))
+    planes[0] = diagonal
+    return _coarsen(planes, 1.0)
 
 
-def _coarsen(stencil: np.ndarray, factor: float) -> list[Level]:
-    levels = [_lay_out(stencil)]
+def _coarsen(planes: np.ndarray, factor: float) -> list[Level]:
+    levels = [_lay_out(planes)]
     while min(levels[-1].shape) > _COARSEST + 1:
         fine = levels[-1]
         shape = ((fine.shape[0] + 1) // 2, (fine.shape[1] + 1) // 2)
-        levels.append(Level(factor * _galerkin(fine.planes, *fine.shape, *shape, _OFFSETS), shape))
+        active = np.flatnonzero([plane.any() for plane in fine.planes])
+        levels.append(Level(factor * _galerkin(fine.planes, *fine.shape, *shape, _OFFSETS, active), shape))
     return levels
 
 
-def _lay_out(stencil: np.ndarray) -> Level:
-    height, width = stencil.shape[:2]
-    planes = np.zeros((13, height + 2 * BORDER, width + 2 * BORDER))
-    planes[:, BORDER:-BORDER, BORDER:-BORDER] = np.moveaxis(stencil, -1, 0)
-    return Level(planes.reshape(13, -1), (height, width))
+def _lay_out(planes: np.ndarray) -> Level:
+    height, width = planes.shape[1:]
+    bordered = np.zeros((13, height + 2 * BORDER, width + 2 * BORDER))
+    bordered[:, BORDER:-BORDER, BORDER:-BORDER] = planes
+    return Level(bordered.reshape(13, -1), (height, width))
 
 
 class Preconditioner:
@@ -229,7 +230,7 @@ def _prolong_add(coarse, solution, height, width, coarse_width):
 
 
 @njit(cache=True)
-def _galerkin(fine, height, width, coarse_height, coarse_width, offsets):
+def _galerkin(fine, height, width, coarse_height, coarse_width, offsets, active):
     stride = width + 2 * BORDER
     coarse_stride = coarse_width + 2 * BORDER
     coarse = np.zeros((13, (coarse_height + 2 * BORDER) * coarse_stride))
@@ -246,7 +247,7 @@ def _galerkin(fine, height, width, coarse_height, coarse_width, offsets):
                         continue
                     i = (v + BORDER) * stride + u + BORDER
                     weight = (1.0 - 0.5 * abs(dv)) * (1.0 - 0.5 * abs(du))
-                    for k in range(13):
+                    for k in active:
                         for side in range(2):
                             if k == 0 and side == 1:
                                 continue

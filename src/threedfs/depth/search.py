@@ -54,6 +54,11 @@ def search_depth(
     return auxiliary
 
 
+def cheapest_depth(cost_volume: np.ndarray, candidates: np.ndarray) -> np.ndarray:
+    """Return the candidate (D,) of least cost (D, H, W) in each pixel, (H, W) float64; the nearer one of equals."""
+    return _search(cost_volume, candidates, np.zeros(cost_volume.shape[1:]), 1.0, 0.0)
+
+
 @njit(cache=True)
 def _search(cost_volume, candidates, depth, photometric_weight, pull):
     count, height, width = cost_volume.shape

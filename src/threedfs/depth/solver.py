@@ -9,7 +9,7 @@ import numpy as np
 
 from threedfs.depth.bending import release_bends
 from threedfs.depth.linear_solve import pose_problem, replace_prior, solve_surface
-from threedfs.depth.search import search_depth
+from threedfs.depth.search import cheapest_depth, search_depth
 from threedfs.depth.weights import coupling_schedule, smoothness_at
 
 
@@ -72,7 +72,7 @@ def optimise_depth(
     """
     schedule = coupling_schedule(coupling, coupling_decay, iterations)
     problem = pose_problem(edge_weight, confidence, measurement_weight, prior)
-    auxiliary_depth = candidates[np.argmin(cost_volume, axis=0)]
+    auxiliary_depth = cheapest_depth(cost_volume, candidates)
     depth = np.full(auxiliary_depth.shape, np.median(auxiliary_depth))
     residuals, steps = [], []
     for iteration in range(iterations + 1):
