@@ -109,6 +109,31 @@ class SparsePoints:
 
 
 @dataclass(frozen=True)
+class OrientedPoints:
+    """Points on surfaces, with the surface's direction and visibility.
+
+    Attributes
+    ----------
+    xyz : (N, 3) float32, world, scene units
+    normal : (N, 3) float32, world, of length 1, out of the surface
+    rgb : (N, 3) uint8
+    seen_point : (M,) int64, index into xyz of each sighting, ascending
+    seen_view : (M,) int64, rank of the keyframe that sees it
+    """
+
+    xyz: np.ndarray
+    normal: np.ndarray
+    rgb: np.ndarray
+    seen_point: np.ndarray
+    seen_view: np.ndarray
+
+    @property
+    def sightings(self) -> np.ndarray:
+        """(N,) int64, by how many keyframes each point is seen."""
+        return np.bincount(self.seen_point, minlength=len(self.xyz))
+
+
+@dataclass(frozen=True)
 class VoxelGrid:
     """A regular grid: `origin` (3,) is the centre of voxel (0, 0, 0), `spacing` its edge, `shape` (nx, ny, nz).
 

@@ -32,6 +32,10 @@ SIGNATURES = {
     "fuse_scene": ("keyframes points depth consistency", "scene", ""),
     "locate": ("scene keyframes points semidense", "support", ""),
     "fuse_object": ("keyframes depth consistency support", "volume", ""),
+    "fuse_baseline": ("keyframes depth support", "volume", "fusion"),
+    "densify": ("undistorted keyframes poses points support stereo", "cloud", "cuda"),
+    "deform": ("field support cloud", "volume", ""),
+    "poisson": ("cloud support keyframes poses frames", "mesh silhouettes masks", ""),
     "object": ("field support keyframes poses frames semidense", "mesh volume silhouettes masks", "method"),
     "evaluate": (
         "poses keyframes mesh masks depth frames masks_truth cameras_truth mesh_truth depth_truth",

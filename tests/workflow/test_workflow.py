@@ -154,6 +154,30 @@ def test_edited_object_films_its_takes_again_and_no_other(project):
     assert jobs_done(project.run(*order)) == Counter(render=1)
 
 
+def test_methods_share_what_they_have_in_common(finished):
+    """Contract: each further method adds its own stages and runs nothing again."""
+    (finished.folder / "all.yaml").write_text("methods: [fused_sdf, deformed_sdf, tsdf, hard_maximum, poisson]\n")
+    output = finished.run("--configfile", "all.yaml")
+    expected = {"stereo": 2, "densify": 1, "deform": 1, "fuse_baseline": 2, "object": 3, "poisson": 1, "evaluate": 4}
+    assert jobs_done(output) == Counter({**expected, "collect": 1})
+    fields = {
+        method: json.loads((finished.folder / f"results/sample/11_object/{method}/mesh.ply").read_text())["inputs"][
+            "field"
+        ]
+        for method in ("fused_sdf", "deformed_sdf", "tsdf", "hard_maximum")
+    }
+    assert len(set(fields.values())) == 4
+    assert "Nothing to be done" in finished.run("--configfile", "all.yaml")
+
+
+def test_points_switched_off_need_no_stereo(finished):
+    (finished.folder / "off.yaml").write_text("methods: [deformed_sdf]\ndensify: {points: off}\n")
+    output = finished.run("--configfile", "off.yaml")
+    assert jobs_done(output) == Counter(dict.fromkeys(("densify", "deform", "object", "evaluate", "collect"), 1))
+    cloud = json.loads((finished.folder / "results/sample/08_densify/points.zarr.zip").read_text())
+    assert cloud["inputs"]["stereo"] is None
+
+
 def test_depth_experiment_tries_keyframes_that_have_a_true_depth_and_joins_the_table(project):
     photos = project.folder / "photos"
     photos.mkdir()

@@ -3,6 +3,7 @@ import json
 import re
 import sys
 
+from threedfs.densify.engine import choose_engine
 from threedfs.errors import UserError
 from threedfs.params.sequences import load_sequences
 from threedfs.store.code import digest_code

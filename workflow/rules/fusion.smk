@@ -105,3 +105,29 @@ rule fuse_object:
         "Fuse the object of {wildcards.sequence}."
     script:
         "../scripts/run_stage.py"
+
+
+rule fuse_baseline:
+    input:
+        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
+        support="results/{sequence}/07_fusion/support.json",
+    output:
+        volume="results/{sequence}/07_fusion/baseline/{fusion}.zarr.zip",
+    log:
+        "results/{sequence}/logs/fuse_baseline/{fusion}.log",
+    benchmark:
+        "results/{sequence}/benchmarks/fuse_baseline/{fusion}.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 2
+    resources:
+        mem_mb=3000,
+    params:
+        code=code_of("fuse_baseline"),
+        settings=settings_of("fuse_baseline"),
+        seed=config["seed"],
+    message:
+        "Fuse the object of {wildcards.sequence} by {wildcards.fusion}."
+    script:
+        "../scripts/run_stage.py"

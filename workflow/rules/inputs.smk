@@ -1,5 +1,12 @@
 # Where rules find their inputs: what the configuration names, and one file per keyframe.
 
+FIELDS = {  # where each method that has one finds the object's field
+    "fused_sdf": "07_fusion/object.zarr.zip",
+    "deformed_sdf": "09_deform/volume.zarr.zip",
+    "tsdf": "07_fusion/baseline/tsdf.zarr.zip",
+    "hard_maximum": "07_fusion/baseline/hard_maximum.zarr.zip",
+}
+
 
 def given(key):
     """Return an input function: a file or folder that the configuration names for a sequence, or nothing.
@@ -53,3 +60,29 @@ def if_wide(pattern):
     return lambda wildcards: (
         pattern if read_keyframes(wildcards)["needs_stereo"] else []
     )
+
+
+def field_of_method(wildcards):
+    """Return the signed distance field that a method takes the object from."""
+    return f"results/{wildcards.sequence}/{FIELDS[wildcards.method]}"
+
+
+def finds_cuda():
+    """Say whether COLMAP can match patches here; asked only where the configuration leaves it open."""
+    settings = settings_of("densify")
+    if not settings["points"] or settings["engine"] != "auto":
+        return False
+    from threedfs.colmap.workspace import has_cuda
+
+    return has_cuda()
+
+
+def if_matched_here(pattern):
+    """Return an input function: one file per keyframe, if our own patch match is to make the points, or nothing."""
+    each, settings = per_keyframe(pattern), settings_of("densify")
+
+    def find(wildcards):
+        engine = choose_engine(settings["points"], settings["engine"], finds_cuda())
+        return each(wildcards) if engine == "cpu" else []
+
+    return find

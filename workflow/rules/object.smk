@@ -3,7 +3,7 @@
 
 rule object:
     input:
-        field="results/{sequence}/07_fusion/object.zarr.zip",
+        field=field_of_method,
         support="results/{sequence}/07_fusion/support.json",
         keyframes="results/{sequence}/03_keyframes/keyframes.json",
         poses="results/{sequence}/02_poses/poses.json",
@@ -18,6 +18,8 @@ rule object:
         "results/{sequence}/logs/object/{method}.log",
     benchmark:
         "results/{sequence}/benchmarks/object/{method}.tsv"
+    wildcard_constraints:
+        method="|".join(FIELDS),
     conda:
         "../../envs/threedfs.yaml"
     threads: 1
@@ -29,5 +31,35 @@ rule object:
         seed=config["seed"],
     message:
         "Extract the object of {wildcards.sequence} by {wildcards.method}."
+    script:
+        "../scripts/run_stage.py"
+
+
+rule poisson:
+    input:
+        cloud="results/{sequence}/08_densify/points.zarr.zip",
+        support="results/{sequence}/07_fusion/support.json",
+        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        poses="results/{sequence}/02_poses/poses.json",
+        frames="results/{sequence}/01_frames/frames.zarr.zip",
+    output:
+        mesh="results/{sequence}/11_object/poisson/mesh.ply",
+        silhouettes="results/{sequence}/11_object/poisson/silhouettes.zarr.zip",
+        masks=directory("results/{sequence}/11_object/poisson/masks"),
+    log:
+        "results/{sequence}/logs/object/poisson.log",
+    benchmark:
+        "results/{sequence}/benchmarks/object/poisson.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 1
+    resources:
+        mem_mb=3000,
+    params:
+        code=code_of("poisson"),
+        settings=settings_of("poisson"),
+        seed=config["seed"],
+    message:
+        "Mesh the surface points of {wildcards.sequence}."
     script:
         "../scripts/run_stage.py"

@@ -7,15 +7,21 @@ from collections.abc import Iterable
 import numpy as np
 
 from threedfs.errors import UserError
+from threedfs.fusion.hard_maximum import HardMaximum
 from threedfs.fusion.softmax import SoftMaximum
-from threedfs.types import View
-
-Vote = tuple[View, np.ndarray, np.ndarray | None, np.ndarray | None]
-"""A view, its depth map (H, W), and its confidence and free depth or None (see `SoftMaximum.add`)."""
+from threedfs.fusion.weighted_average import WeightedAverage
 
 
-def fuse_views(votes: Iterable[Vote], fused: SoftMaximum) -> tuple[np.ndarray, np.ndarray]:
+def fuse_views(
+    votes: Iterable[tuple], fused: SoftMaximum | HardMaximum | WeightedAverage
+) -> tuple[np.ndarray, np.ndarray]:
     """Fuse the depth maps of all views (3.3.1); never more than one is held.
+
+    Parameters
+    ----------
+    votes : iterable of tuple
+        Of each view what the fusion's `add` takes: the view, its depth map, and more for the soft maximum.
+    fused : SoftMaximum, HardMaximum or WeightedAverage
 
     Returns
     -------

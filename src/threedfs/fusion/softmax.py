@@ -10,7 +10,7 @@ from numba import njit, prange
 from scipy.ndimage import gaussian_filter
 
 from threedfs.checks import check_shape
-from threedfs.fusion.view_sdf import invert_depth, sample_inverse_depth, signed_distance
+from threedfs.fusion.view_sdf import invert_depth, measure_voxel, relate
 from threedfs.geometry.projection import normals_from_depth, pixel_grid
 from threedfs.types import Camera, View, VoxelGrid
 
@@ -116,16 +116,12 @@ class SoftMaximum:
         trust = np.ones(shape) if confidence is None else self._rate(view.camera, depth, confidence)
         handicap = hardness * self._distrust * (1.0 - trust)
         free = np.zeros(shape, np.float32) if free_depth is None else free_depth.astype(np.float32)
-        camera = view.camera
         numba.set_num_threads(max(1, min(self._threads, numba.config.NUMBA_NUM_THREADS)))
         _add_view(
             self._weighted,
             self._weight,
             self._seen,
-            np.asarray(self.grid.origin, np.float64),
-            float(self.grid.spacing),
-            view.px_from_world,
-            np.array([camera.fx, camera.fy, camera.cx, camera.cy]),
+            relate(self.grid, view),
             invert_depth(depth),
             handicap,
             free,
@@ -184,40 +180,17 @@ def estimate_fusion_memory(grid_shape: tuple[int, int, int], image_shape: tuple[
 
 @njit(cache=True, parallel=True)
 def _add_view(
-    weighted,
-    weight,
-    seen,
-    origin,
-    spacing,
-    px_from_world,
-    intrinsics,
-    inverse_depth,
-    handicap,
-    free_depth,
-    clip_distance,
-    hardness,
-    discontinuity,
+    weighted, weight, seen, rays, inverse_depth, handicap, free_depth, clip_distance, hardness, discontinuity
 ):
-    fx, fy, cx, cy = intrinsics[0], intrinsics[1], intrinsics[2], intrinsics[3]
-    p = px_from_world
     nx, ny, nz = seen.shape
     for ix in prange(nx):
-        x = origin[0] + spacing * ix
         for iy in range(ny):
-            y = origin[1] + spacing * iy
             for iz in range(nz):
-                z = origin[2] + spacing * iz
-                voxel_depth = p[2, 0] * x + p[2, 1] * y + p[2, 2] * z + p[2, 3]
-                if voxel_depth <= 0:
+                distance, voxel_depth, row, column = measure_voxel(
+                    rays, ix, iy, iz, inverse_depth, clip_distance, discontinuity
+                )
+                if math.isnan(distance):
                     continue
-                u = (p[0, 0] * x + p[0, 1] * y + p[0, 2] * z + p[0, 3]) / voxel_depth
-                v = (p[1, 0] * x + p[1, 1] * y + p[1, 2] * z + p[1, 3]) / voxel_depth
-                inverse = sample_inverse_depth(inverse_depth, u, v, discontinuity)
-                if math.isnan(inverse):
-                    continue
-                ray_length = math.sqrt(((u - cx) / fx) ** 2 + ((v - cy) / fy) ** 2 + 1.0)
-                distance = signed_distance(1.0 / inverse, voxel_depth, ray_length, clip_distance)
-                row, column = int(v + 0.5), int(u + 0.5)
                 penalty = handicap[row, column]
                 if distance > 1.0 and voxel_depth <= free_depth[row, column]:
                     penalty *= max(0.0, 1.0 - (distance - 1.0) / _FREE_RAMP)

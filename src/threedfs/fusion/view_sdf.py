@@ -7,6 +7,18 @@ import math
 import numpy as np
 from numba import njit
 
+from threedfs.types import View, VoxelGrid
+
+Rays = tuple[np.ndarray, float, np.ndarray, np.ndarray]
+"""Origin and spacing of a grid, (3, 4) projection matrix and (fx, fy, cx, cy) of a view: what kernels work with."""
+
+
+def relate(grid: VoxelGrid, view: View) -> Rays:
+    """Return what `measure_voxel` needs of a grid and a view."""
+    camera = view.camera
+    intrinsics = np.array([camera.fx, camera.fy, camera.cx, camera.cy])
+    return np.asarray(grid.origin, np.float64), float(grid.spacing), view.px_from_world, intrinsics
+
 
 def invert_depth(depth: np.ndarray) -> np.ndarray:
     """Return the inverse depth, (H, W) float32, NaN where the depth is not a positive finite number.
@@ -53,3 +65,27 @@ def signed_distance(surface_depth, voxel_depth, ray_length, clip_distance):
     difference in depth is the sign of the result: positive in front of the surface.
     """
     return (surface_depth - voxel_depth) * ray_length / clip_distance
+
+
+@njit(cache=True)
+def measure_voxel(rays, ix, iy, iz, inverse_depth, clip_distance, discontinuity):
+    """Return a voxel's signed distance (see `signed_distance`), its depth, and its pixel's row and column.
+
+    The distance is NaN for a voxel behind the camera, outside the image or at a pixel without depth.
+    """
+    origin, spacing, p, intrinsics = rays
+    x = origin[0] + spacing * ix
+    y = origin[1] + spacing * iy
+    z = origin[2] + spacing * iz
+    depth = p[2, 0] * x + p[2, 1] * y + p[2, 2] * z + p[2, 3]
+    if depth <= 0:
+        return np.nan, depth, 0, 0
+    u = (p[0, 0] * x + p[0, 1] * y + p[0, 2] * z + p[0, 3]) / depth
+    v = (p[1, 0] * x + p[1, 1] * y + p[1, 2] * z + p[1, 3]) / depth
+    inverse = sample_inverse_depth(inverse_depth, u, v, discontinuity)
+    if math.isnan(inverse):
+        return np.nan, depth, 0, 0
+    fx, fy, cx, cy = intrinsics[0], intrinsics[1], intrinsics[2], intrinsics[3]
+    ray_length = math.sqrt(((u - cx) / fx) ** 2 + ((v - cy) / fy) ** 2 + 1.0)
+    distance = signed_distance(1.0 / inverse, depth, ray_length, clip_distance)
+    return distance, depth, int(v + 0.5), int(u + 0.5)

@@ -17,6 +17,7 @@ STEREO = "threedfs/stereo/1"
 DEPTH_MAP = "threedfs/depth-map/1"
 CONSISTENCY = "threedfs/consistency/1"
 VOLUME = "threedfs/volume/1"
+ORIENTED_POINTS = "threedfs/oriented-points/1"
 SUPPORT = "threedfs/support/1"
 SILHOUETTES = "threedfs/silhouettes/1"
 DEPTH_TRIAL = "threedfs/depth-trial/1"
@@ -32,7 +33,8 @@ _RULES = {
     STEREO: "stereo or stereo_check",
     DEPTH_MAP: "depth",
     CONSISTENCY: "consistency",
-    VOLUME: "fuse_scene, fuse_object or object",
+    VOLUME: "fuse_scene, fuse_object, fuse_baseline, deform or object",
+    ORIENTED_POINTS: "densify",
     SUPPORT: "locate",
     SILHOUETTES: "object",
     DEPTH_TRIAL: "depth_trial",

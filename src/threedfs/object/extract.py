@@ -39,7 +39,7 @@ def extract_surface(sdf: np.ndarray, grid: VoxelGrid) -> Mesh:
     faces = faces.astype(np.int64)
     if enclosed_volume(Mesh(vertices, faces)) < 0:
         faces = faces[:, ::-1]
-    return _largest_shell(Mesh(vertices, faces))
+    return keep_largest_shell(Mesh(vertices, faces))
 
 
 def enclosed_volume(mesh: Mesh) -> float:
@@ -48,7 +48,8 @@ def enclosed_volume(mesh: Mesh) -> float:
     return float((np.cross(a, b) * c).sum() / 6)
 
 
-def _largest_shell(mesh: Mesh) -> Mesh:
+def keep_largest_shell(mesh: Mesh) -> Mesh:
+    """Keep that connected part of a closed mesh which encloses the largest volume."""
     edges = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]]])
     count = len(mesh.vertices)
     graph = coo_array((np.ones(len(edges), bool), (edges[:, 0], edges[:, 1])), shape=(count, count))

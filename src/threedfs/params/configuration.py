@@ -11,7 +11,7 @@ from threedfs.errors import UserError
 from threedfs.params.rendered import RENDERED_KEYS
 from threedfs.params.schema import declared_stages, make_params, stage_schema
 
-METHODS = ("fused_sdf",)
+METHODS = ("fused_sdf", "deformed_sdf", "tsdf", "hard_maximum", "poisson")
 SEQUENCE_NAME = r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$"
 
 _PATH = {"type": ["string", "null"]}

@@ -40,7 +40,7 @@ sequences: {}
 # Go on without the sequences whose source is absent; they are named at the start.
 skip_absent: false
 
-# How the object is cut out of the fused volume.
+# How the object is made: fused_sdf, deformed_sdf, tsdf, hard_maximum, poisson.
 methods: [fused_sdf]
 
 # Of every random choice.
@@ -109,7 +109,9 @@ _KEYS = {
     "{intrinsics: [fx, fy, cx, cy], offset: [x, y, z]} of the depth camera, its place in the colour camera's axes in "
     "units of the true cameras; null: both images are of one camera",
     "skip_absent": "go on without the sequences whose source is absent; they are named at the start",
-    "methods": "how the object is cut out: `fused_sdf`",
+    "methods": "how the object is made, each with a mesh, masks and figures of its own: `fused_sdf` (soft maximum), "
+    "`deformed_sdf` (its zero level moved onto surface points), `tsdf` (KinectFusion's weighted average), "
+    "`hard_maximum` (Eq. 13), `poisson` (the surface points alone)",
     "seed": "of every random choice",
     "store": "folder of finished work, and of the kernels compiled for it",
 }

@@ -9,17 +9,16 @@ import numpy as np
 from threedfs.errors import UserError
 from threedfs.fusion.fixation import find_fixation, viewing_distance
 from threedfs.io.frames import read_frames
-from threedfs.io.images import write_mask
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import write_mesh
+from threedfs.io.outlines import write_outlines
 from threedfs.io.point_clouds import read_semidense_points
 from threedfs.io.poses import read_poses
-from threedfs.io.volumes import Volume, read_support, read_volume, write_silhouettes, write_volume
+from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.job import Job
 from threedfs.object.component import choose_component, mark_points
 from threedfs.object.extract import extract_surface
 from threedfs.object.field import add_foot, height_above, mask_field
-from threedfs.object.silhouettes import draw_silhouette, draw_source_silhouette
 from threedfs.params.object import ObjectParams
 
 
@@ -69,9 +68,5 @@ def run(
     job.progress.note(f"{method}: {len(surface.faces)} triangles, {chosen.rivals} other components left out")
     write_mesh(mesh, surface)
     write_volume(volume, Volume(grid, alone, fused.seen), job.header)
-    write_silhouettes(silhouettes, {view.name: draw_silhouette(surface, view) for view in views}, job.header)
-    distortion = read_poses(poses).distortion
-    source_shape = read_frames(frames).source_shape
-    masks.mkdir(parents=True, exist_ok=True)
-    for view in views:
-        write_mask(masks / f"{view.name}.png", draw_source_silhouette(surface, view, distortion, source_shape))
+    distortion, source_shape = read_poses(poses).distortion, read_frames(frames).source_shape
+    write_outlines(silhouettes, masks, surface, views, distortion, source_shape, job.header)

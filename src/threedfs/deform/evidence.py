@@ -1,0 +1,127 @@
+"""How far surface points are to be believed against the field."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import map_coordinates
+
+from threedfs.errors import UserError
+from threedfs.geometry.grid import voxel_from_world
+from threedfs.types import OrientedPoints, Plane, VoxelGrid
+
+_LEAST_POINTS = 50
+_WIDEST_GAP = 270.0
+"""Degrees around the object without any point from which its points are all on one side."""
+
+
+@dataclass(frozen=True)
+class SurfaceSamples:
+    """Points where the field should be zero.
+
+    Attributes
+    ----------
+    xyz : (N, 3) float64, world
+    sdf : (N,) float64, the field there
+    trust : (N,) float64 in (0, 1]
+    """
+
+    xyz: np.ndarray
+    sdf: np.ndarray
+    trust: np.ndarray
+
+
+def sample_field(sdf: np.ndarray, grid: VoxelGrid, points: np.ndarray) -> np.ndarray:
+    """Interpolate a field at points (N, 3), world: (N,) float64, NaN outside the grid."""
+    places = voxel_from_world(grid, points.astype(np.float64))
+    values = map_coordinates(sdf.astype(np.float64), places.T, order=1, mode="nearest")
+    inside = ((places >= 0) & (places <= np.array(grid.shape) - 1)).all(axis=1)
+    return np.where(inside, values, np.nan)
+
+
+def sample_gradient(sdf: np.ndarray, grid: VoxelGrid, points: np.ndarray) -> np.ndarray:
+    """Return the field's direction of ascent at points: (N, 3) float64, of length 1, 0 where it is flat."""
+    steps = grid.spacing * np.eye(3)
+    rise = [
+        np.nan_to_num(sample_field(sdf, grid, points + step) - sample_field(sdf, grid, points - step)) for step in steps
+    ]
+    gradient = np.stack(rise, axis=1)
+    return gradient / np.maximum(np.linalg.norm(gradient, axis=1, keepdims=True), 1e-12)
+
+
+def take_points(
+    points: OrientedPoints,
+    sdf: np.ndarray,
+    seen: np.ndarray,
+    grid: VoxelGrid,
+    *,
+    reach: float,
+    min_cosine: float,
+    full_sightings: int,
+) -> SurfaceSamples:
+    """Choose the points that may correct a field, and say how far each is trusted.
+
+    Differs from the paper, which takes every point: a point counts if the field is known and near zero there, and
+    ascends along the point's normal. Its trust is the cosine between the two, times its sightings.
+
+    Parameters
+    ----------
+    points : OrientedPoints
+    sdf, seen : (nx, ny, nz)
+        The field and the number of views that see each voxel.
+    grid : VoxelGrid
+    reach : float
+        Largest |sdf| at a point.
+    min_cosine : float
+        Least cosine between normal and gradient; with -1 all directions pass and trust is 1, as in the paper.
+    full_sightings : int
+        Keyframes that see a point for it to be trusted fully.
+    """
+    value = sample_field(sdf, grid, points.xyz)
+    known = sample_field((seen > 0).astype(np.float32), grid, points.xyz) > 0.5
+    kept = known & (np.abs(np.nan_to_num(value, nan=np.inf)) <= reach)
+    xyz = points.xyz[kept].astype(np.float64)
+    if min_cosine <= -1:
+        return SurfaceSamples(xyz, value[kept], np.ones(len(xyz)))
+    cosine = (sample_gradient(sdf, grid, xyz) * points.normal[kept]).sum(axis=1)
+    trust = np.clip(cosine, 0.01, 1) * np.minimum(1, points.sightings[kept] / full_sightings)
+    agrees = cosine >= min_cosine
+    return SurfaceSamples(xyz[agrees], value[kept][agrees], trust[agrees])
+
+
+def check_samples(samples: SurfaceSamples, centre: np.ndarray, plane: Plane) -> None:
+    """Refuse points that cannot tell where the object's surface is.
+
+    Parameters
+    ----------
+    samples : SurfaceSamples
+    centre : (3,) float64
+        Of the object's box, world.
+    plane : Plane
+        The support surface.
+
+    Raises
+    ------
+    UserError
+        If they are too few, or all lie within a quarter turn around the object.
+    """
+    advice = "raise densify.max_cost, or set densify.points to off to go on without the correction."
+    if len(samples.xyz) < _LEAST_POINTS:
+        raise UserError(
+            f"Expected at least {_LEAST_POINTS} surface points near the fused surface of the object, found "
+            f"{len(samples.xyz)}; the object has too little texture, or the keyframes are too far apart; {advice}"
+        )
+    gap = widest_gap(samples.xyz - centre, plane.normal)
+    if gap > _WIDEST_GAP:
+        raise UserError(
+            f"Expected surface points around the object, found all of them within {360 - gap:.0f} degrees; "
+            f"the other sides were not filmed or have no texture; {advice}"
+        )
+
+
+def widest_gap(offsets: np.ndarray, up: np.ndarray) -> float:
+    """Return the widest angle around an axis, degrees, in which none of the directions (N, 3) lies."""
+    first = np.cross(up, np.eye(3)[np.argmin(np.abs(up))])
+    turns = np.sort(np.degrees(np.arctan2(offsets @ np.cross(up, first), offsets @ first)))
+    return float(np.diff(turns, append=turns[:1] + 360).max())

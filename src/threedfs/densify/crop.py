@@ -1,0 +1,24 @@
+"""The points of the object alone."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from threedfs.types import OrientedPoints, Plane
+
+
+def crop_points(
+    points: OrientedPoints, low: np.ndarray, high: np.ndarray, plane: Plane, clearance: float
+) -> OrientedPoints:
+    """Keep the points in a box (corners low, high (3,), world) that lie over a plane by more than `clearance`."""
+    xyz = points.xyz.astype(np.float64)
+    kept = ((xyz >= low) & (xyz <= high)).all(axis=1) & (plane.distance(xyz) > clearance)
+    renumbered = np.cumsum(kept) - 1
+    seen = kept[points.seen_point]
+    return OrientedPoints(
+        points.xyz[kept],
+        points.normal[kept],
+        points.rgb[kept],
+        renumbered[points.seen_point[seen]],
+        points.seen_view[seen],
+    )

@@ -1,0 +1,54 @@
+"""Move the zero level of the object's field onto the surface points."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from threedfs.deform.correction import CorrectionRule, correct_zero_crossing
+from threedfs.deform.evidence import check_samples, take_points
+from threedfs.io.oriented_points import read_oriented_points
+from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
+from threedfs.job import Job
+from threedfs.params.deform import DeformParams
+
+
+def run(*, field: Path, support: Path, cloud: Path, volume: Path, params: DeformParams, job: Job) -> None:
+    """Read the fused field and the points; write the corrected field, the fused one if points are switched off."""
+    fused = read_volume(field)
+    points, engine = read_oriented_points(cloud)
+    sdf = fused.sdf
+    if engine == "off":
+        job.progress.note("no surface points (densify.points is off): the field stays as it is")
+    else:
+        samples = take_points(
+            points,
+            fused.sdf,
+            fused.seen,
+            fused.grid,
+            reach=params.reach,
+            min_cosine=params.min_cosine,
+            full_sightings=params.full_sightings,
+        )
+        place = read_support(support)
+        check_samples(samples, (place.low + place.high) / 2, place.plane)
+        sdf = correct_zero_crossing(
+            fused.sdf,
+            fused.seen,
+            fused.grid,
+            samples,
+            CorrectionRule(
+                rbf_width=params.rbf_width,
+                controls=params.controls,
+                control_level=params.control_level,
+                surface_points=params.surface_points,
+                anchors=params.anchors,
+                ridge=params.ridge,
+                reweightings=params.reweightings,
+                residual_scale=params.residual_scale,
+            ),
+            np.random.default_rng(job.seed),
+            job.progress.note,
+        )
+    write_volume(volume, Volume(fused.grid, sdf, fused.seen), job.header)

@@ -1,0 +1,43 @@
+"""The object's mesh from surface points alone: the baseline of multi-view stereo and Poisson reconstruction."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from threedfs.colmap.poisson import mesh_points
+from threedfs.densify.crop import crop_points
+from threedfs.io.frames import read_frames
+from threedfs.io.keyframes import read_keyframes
+from threedfs.io.meshes import write_mesh
+from threedfs.io.oriented_points import read_oriented_points
+from threedfs.io.outlines import write_outlines
+from threedfs.io.poses import read_poses
+from threedfs.io.volumes import read_support
+from threedfs.job import Job
+from threedfs.object.extract import keep_largest_shell
+from threedfs.params.poisson import PoissonParams
+
+
+def run(
+    *,
+    cloud: Path,
+    support: Path,
+    keyframes: Path,
+    poses: Path,
+    frames: Path,
+    mesh: Path,
+    silhouettes: Path,
+    masks: Path,
+    params: PoissonParams,
+    job: Job,
+) -> None:
+    """Read the points; write the mesh of those on the object, and its masks."""
+    place = read_support(support)
+    clearance = params.clearance * (place.high - place.low).max()
+    points = crop_points(read_oriented_points(cloud)[0], place.low, place.high, place.plane, clearance)
+    surface = keep_largest_shell(mesh_points(points, params.octree_depth))
+    job.progress.note(f"{len(points.xyz)} points, {len(surface.faces)} triangles")
+    write_mesh(mesh, surface)
+    views = [entry.view for entry in read_keyframes(keyframes).values()]
+    distortion, source_shape = read_poses(poses).distortion, read_frames(frames).source_shape
+    write_outlines(silhouettes, masks, surface, views, distortion, source_shape, job.header)

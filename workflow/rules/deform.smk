@@ -1,0 +1,27 @@
+# 09: the zero level of the object's field, moved onto its surface points.
+
+
+rule deform:
+    input:
+        field="results/{sequence}/07_fusion/object.zarr.zip",
+        support="results/{sequence}/07_fusion/support.json",
+        cloud="results/{sequence}/08_densify/points.zarr.zip",
+    output:
+        volume="results/{sequence}/09_deform/volume.zarr.zip",
+    log:
+        "results/{sequence}/logs/deform.log",
+    benchmark:
+        "results/{sequence}/benchmarks/deform.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 2
+    resources:
+        mem_mb=3000,
+    params:
+        code=code_of("deform"),
+        settings=settings_of("deform"),
+        seed=config["seed"],
+    message:
+        "Correct the zero level of {wildcards.sequence}."
+    script:
+        "../scripts/run_stage.py"
