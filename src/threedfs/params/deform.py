@@ -12,8 +12,8 @@ class DeformParams:
     """How the zero level of the fused field is moved onto surface points."""
 
     rbf_width: float = parameter(
-        0.1,
-        "distance at which a basis function of the correction falls to 1/e",
+        0.03,
+        "distance at which a basis function of the correction falls to 1/e (paper: 0.1)",
         unit="scene unit",
         symbol="sigma",
         equation="Eq. 17",
@@ -31,7 +31,7 @@ class DeformParams:
         maximum=1.0,
     )
     surface_points: int = parameter(
-        4000, "surface points drawn for the fit (paper: 500)", equation="Eq. 18", minimum=50, maximum=20000
+        6000, "surface points drawn for the fit (paper: 500)", equation="Eq. 18", minimum=50, maximum=20000
     )
     anchors: int = parameter(
         500,
