@@ -67,7 +67,7 @@ def signed_distance(surface_depth, voxel_depth, ray_length, clip_distance):
     return (surface_depth - voxel_depth) * ray_length / clip_distance
 
 
-@njit(cache=True)
+@njit(cache=True, inline="always")
 def measure_voxel(rays, ix, iy, iz, inverse_depth, clip_distance, discontinuity):
     """Return a voxel's signed distance (see `signed_distance`), its depth, and its pixel's row and column.
 
