@@ -75,7 +75,6 @@ def correct_zero_crossing(
     Returns
     -------
     (nx, ny, nz) float32, in [-1, 1]
-
     """
     chosen = rng.permutation(len(samples.xyz))[: rule.surface_points]
     xyz, value, trust = samples.xyz[chosen], samples.sdf[chosen], samples.trust[chosen]
