@@ -93,7 +93,7 @@ def test_presets_and_data_sets_are_valid(defaults, path):
     check_configuration(merged(defaults, yaml.safe_load(path.read_text())), configuration_schema())
 
 
-def test_benchmark_holds_every_object_of_the_paper_every_real_sequence_and_every_method():
+def test_benchmark_holds_every_object_of_the_paper_every_real_sequence():
     benchmark = yaml.safe_load((ROOT / "config/benchmark.yaml").read_text())
     real = yaml.safe_load((ROOT / "config/datasets/real.yaml").read_text())
     sequences = benchmark["sequences"]
@@ -101,7 +101,8 @@ def test_benchmark_holds_every_object_of_the_paper_every_real_sequence_and_every
     assert all(sequences[name] == {"rendered": name} for name in SEQUENCES)
     for name, entry in real["sequences"].items():
         assert sequences[name] == {**entry, "dataset": real["dataset"]}
-    assert benchmark["evaluate"] == real["evaluate"] and benchmark["methods"] == [*METHODS]
+    assert benchmark["evaluate"] == real["evaluate"]
+    assert set(benchmark["methods"]) <= set(METHODS)
     assert set(benchmark["depth_experiment"]["sequences"]) <= set(sequences)
 
 

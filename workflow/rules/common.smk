@@ -17,6 +17,8 @@ except UserError as fault:
 
 OBJECTS = [name for name in SEQUENCES if SEQUENCES[name]["object"]]
 TRIED = [name for name in SEQUENCES if SEQUENCES[name]["depth_experiment"]]
+# One sequence is done soonest by both cores; of many, two at a time, since half of the work on poses uses one core.
+THREADS_OF_POSES = 2 if len(SEQUENCES) == 1 else 1
 STORE_DIGESTS = InputDigests(Path(config["store"]) / "digests")
 
 

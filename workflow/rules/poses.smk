@@ -19,7 +19,7 @@ rule poses:
         "results/{sequence}/benchmarks/poses.tsv"
     conda:
         "../../envs/threedfs.yaml"
-    threads: 2
+    threads: THREADS_OF_POSES
     resources:
         mem_mb=3000,
     params:
