@@ -1,5 +1,6 @@
 # make demo    set everything up in .venv and reconstruct the sample; again: go on where a run was stopped or killed
 # make test    set everything up and run all tests
+# make setup   only set everything up
 # make config  rewrite config/ from the parameters declared in src/threedfs/params/
 # make results copy the figures, tables and plots of the last run into docs/
 # make lock    rewrite the hashed pins from envs/requirements.in

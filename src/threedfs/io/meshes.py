@@ -1,4 +1,4 @@
-"""Meshes: written as binary PLY, read from any format."""
+"""Meshes: written as PLY and for other programs, read from any format."""
 
 from __future__ import annotations
 
@@ -13,10 +13,12 @@ from threedfs.types import Mesh
 
 
 def write_mesh(path: Path, mesh: Mesh) -> None:
-    """Write a mesh as binary PLY."""
-    data = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(file_type="ply", vertex_normal=False)
+    """Write a mesh in the format of the path's ending: binary PLY, or STL, OBJ, GLB."""
+    kind = path.suffix.lower().removeprefix(".")
+    settings = {"vertex_normal": False} if kind == "ply" else {}
+    data = trimesh.Trimesh(mesh.vertices, mesh.faces, process=False).export(file_type=kind, **settings)
     with atomic(path) as temporary:
-        temporary.write_bytes(data)
+        temporary.write_bytes(data.encode() if isinstance(data, str) else data)
 
 
 def read_mesh(path: Path) -> Mesh:

@@ -58,9 +58,11 @@ _INTRODUCTION = """\
     snakemake --cores 2 --configfile my.yaml
 
 What the file names takes the place of the default, everything else stays. `presets/paper.yaml` has the constants of
-the paper, `presets/quick.yaml` makes everything small; a file of sequences and a preset can be given together:
-`--configfile my.yaml config/presets/paper.yaml`. `benchmark.yaml` is the whole benchmark.
-One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`.
+the paper, `presets/quick.yaml` makes everything small; files can be given together, the last counts:
+`--configfile my.yaml config/presets/paper.yaml`. Sections are merged key by key, so a second file adds its sequences
+to those of the first; lists and single values are replaced. `benchmark.yaml` is the whole benchmark.
+One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`; keys without a dot in their name can be
+given so, parameters of stages only in a file.
 `datasets/` has files of sequences: the data sets that the project is measured on, and the layouts of published ones.
 
 An unknown key, a wrong type or a value out of range stops the run before it starts, with a sentence.
@@ -71,9 +73,16 @@ An unknown key, a wrong type or a value out of range stops the run before it sta
 Paths count from the folder in which `snakemake` runs. A sequence's name is a folder's name: letters, digits, dots,
 dashes, underscores.
 
-A missing file or folder stops the run before it starts. With `--keep-going` its sequence fails at once and the others
-are finished, as with whatever else may go wrong in a sequence; the tables name it with the reason, and the exit status
-is not 0.
+Masks of your own to score against are PNG of the size of the video or the photos, white on black, called by the
+frame's number from 0 (`120.png`) or like the photo; a few are enough. Scores: `results/tables/iou.md`.
+
+    dataset: mine
+    sequences:
+      mug: {source: mug.mp4, truth: {masks: mug_masks}}
+
+A missing file or folder stops the run before it starts (a dry run, `-n`, does not look for it). With `--keep-going`
+its sequence fails at once and the others are finished, as with whatever else may go wrong in a sequence; the tables
+name it with the reason, and the exit status is not 0.
 
 ## Parameters
 
@@ -83,7 +92,8 @@ Symbol and equation are those of the paper, equations counted in the order of it
 _KEYS = {
     "dataset": "name of the set, a column of `results/metrics.csv`; tables and plots are made for each set",
     "video": "one video or folder of photos; the sequence gets the file's name",
-    "sequences.<name>.source": "a video (mp4, mov) or a folder of photos",
+    "sequences.<name>.source": "a video (mp4, mov) or a folder of photos (jpg, png, tif, bmp, webp) of one camera, "
+    "zoom and orientation; those of another size are left out",
     "sequences.<name>.dataset": "its own set, in place of `dataset`: one file may hold several sets",
     "sequences.<name>.cameras": "given cameras: a COLMAP model folder, `transforms.json`, `cameras.json` with "
     "`cam_to_world`, a folder of CONTOUR projection matrices or of `NAME.pose.txt` (7-Scenes, 3DMatch), or a pose file "
@@ -101,8 +111,9 @@ _KEYS = {
     "sequences.<name>.truth.masks": "folder of masks named like the frames (white: object), to measure against; "
     "their frames become keyframes",
     "sequences.<name>.truth.cameras": "reference cameras, to measure against",
-    "sequences.<name>.truth.mesh": "reference mesh, in the frame of the reference cameras",
-    "sequences.<name>.truth.depth": "folder of true depth images, `NAME.depth.png` or `NNNNN-depth.png`",
+    "sequences.<name>.truth.mesh": "reference mesh, in the frame of the reference cameras, which it needs",
+    "sequences.<name>.truth.depth": "folder of true depth images, `NAME.depth.png` or `NNNNN-depth.png`; "
+    "needs `truth.cameras`",
     "sequences.<name>.truth.depth_scale": "their units per unit of the true cameras (default 1000: millimetres and "
     "metres)",
     "sequences.<name>.truth.depth_camera": "for depth images that are not registered to the colour images: "

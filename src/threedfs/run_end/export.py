@@ -1,0 +1,57 @@
+"""Write the mesh of an object upright and at its true height, for a printer or a viewer.
+
+    python -m threedfs.run_end.export results/my 95 my.stl [METHOD]
+
+The format is that of the file's ending: stl, ply, obj or glb. METHOD is fused_sdf where none is given.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from threedfs.errors import UserError
+from threedfs.io.meshes import read_mesh, write_mesh
+from threedfs.io.volumes import read_support
+from threedfs.object.stand import stand_up
+
+_FORMATS = (".stl", ".ply", ".obj", ".glb")
+
+
+def export(sequence: Path, height: str, file: Path, method: str = "fused_sdf") -> None:
+    """Write a sequence's mesh with its support plane at z = 0.
+
+    Parameters
+    ----------
+    sequence : Path
+        Folder of its results.
+    height : str
+        A positive number, in the unit that the file is to have.
+    file : Path
+    method : str
+        Whose mesh it is.
+
+    Raises
+    ------
+    UserError
+        If there is no such mesh, the height is no positive number, or the format is not known.
+    """
+    try:
+        size = float(height)
+    except ValueError:
+        size = 0.0
+    if not 0 < size < float("inf"):
+        raise UserError(f"height: expected a positive number, the height of the object, got {height}.")
+    if file.suffix.lower() not in _FORMATS:
+        raise UserError(f"{file}: expected a file that ends in {', '.join(_FORMATS)}; rename it.")
+    mesh = read_mesh(sequence / "11_object" / method / "mesh.ply")
+    write_mesh(file, stand_up(mesh, read_support(sequence / "07_fusion" / "support.json").plane, size))
+
+
+if __name__ == "__main__":
+    if not 4 <= len(sys.argv) <= 5:
+        sys.exit("threedfs: expected a folder of results, a height and a file to write, as in: results/my 95 my.stl")
+    try:
+        export(Path(sys.argv[1]), sys.argv[2], Path(sys.argv[3]), *sys.argv[4:])
+    except UserError as fault:
+        sys.exit(f"threedfs: {fault}")

@@ -1,0 +1,44 @@
+"""Writing an object's mesh for other programs."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import trimesh
+
+from threedfs.errors import UserError
+from threedfs.io.meshes import read_mesh, write_mesh
+from threedfs.io.volumes import Support, write_support
+from threedfs.run_end.export import export
+from threedfs.types import Mesh, Plane
+
+
+@pytest.fixture
+def results(tmp_path):
+    """Results of a sequence: a ball on a tilted plane."""
+    ball = trimesh.creation.icosphere(subdivisions=2)
+    write_mesh(tmp_path / "11_object/fused_sdf/mesh.ply", Mesh(ball.vertices, ball.faces))
+    plane = Plane(np.array([0.6, 0.0, 0.8]), 1.0)
+    write_support(tmp_path / "07_fusion/support.json", Support(plane, -np.ones(3), np.ones(3), {}), {"stage": "test"})
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", ["ball.stl", "ball.ply", "ball.obj", "ball.GLB"])
+def test_mesh_has_the_height_given_and_stands_at_zero(results, name):
+    export(results, "40", results / name)
+    written = read_mesh(results / name).vertices
+    assert np.allclose([written[:, 2].min(), written[:, 2].max()], [0, 40], atol=1e-4)
+
+
+@pytest.mark.parametrize("height", ["tall", "-3", "0", "nan", "inf"])
+def test_height_that_is_none_is_refused(results, height):
+    with pytest.raises(UserError, match=rf"positive number.* {height}\.$"):
+        export(results, height, results / "ball.stl")
+
+
+def test_format_that_is_not_known_and_mesh_that_is_not_there_are_refused(results):
+    with pytest.raises(UserError, match=r"ball\.dwg: expected a file that ends in"):
+        export(results, "40", results / "ball.dwg")
+    with pytest.raises(UserError, match=r"poisson.*expected a mesh file, found none"):
+        export(results, "40", results / "ball.stl", "poisson")
+    assert not list(results.glob("ball.*"))
