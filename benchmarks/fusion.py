@@ -41,7 +41,7 @@ def measure(views: list[View], depths: list[np.ndarray], longest: int, threads: 
     """Return wall and core nanoseconds per voxel and view of fusion, then per pixel and pair of the consistency."""
     grid = cover_box(np.full(3, -0.4), np.full(3, 0.4), longest)
     trust, free = np.ones(CAMERA.shape), np.full(CAMERA.shape, np.inf)
-    fused = SoftMaximum(grid, 4 * grid.spacing, 10.0, distrust=4.0, discontinuity=0.02, threads=threads)
+    fused = SoftMaximum(grid, 4 * grid.spacing, 10.0, distrust=40.0, discontinuity=0.02, threads=threads)
     start = _clocks()
     for view, depth in zip(views, depths, strict=True):
         fused.add(view, depth, trust, free)

@@ -246,3 +246,19 @@ def test_what_a_sequence_does_not_state_has_its_default(defaults, tmp_path, monk
     found, _ = load_sequences({**defaults, "sequences": {"bare": bare, "full": full}}, ROOT)
     assert (found["bare"]["intrinsics"], found["bare"]["depth_scale"], found["bare"]["object"]) == (None, 1000.0, True)
     assert (found["full"]["intrinsics"], found["full"]["depth_scale"]) == ([1, 2, 3, 4], 10)
+
+
+def test_values_of_one_sequence_are_checked_like_those_of_the_run(defaults):
+    def check(settings):
+        entry = {"source": "mug.mp4", "settings": settings}
+        check_configuration({**defaults, "sequences": {"mug": entry}}, configuration_schema())
+
+    check({"depth": {"photometric_weight": 10}})
+    with pytest.raises(UserError, match=r"sequences\.mug\.settings\.depth: unknown key wieght"):
+        check({"depth": {"wieght": 10}})
+    with pytest.raises(UserError, match=r"sequences\.mug\.settings\.depth\.photometric_weight: expected more than 0"):
+        check({"depth": {"photometric_weight": -1}})
+    with pytest.raises(UserError, match="expected min_angle <= max_angle"):
+        check({"keyframes": {"max_angle": 1}})
+    with pytest.raises(UserError, match="expected no names of sequences"):
+        check({"depth_experiment": {"sequences": ["mug"]}})

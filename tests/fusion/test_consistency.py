@@ -78,7 +78,7 @@ def test_one_wrong_view_does_not_carve(table, exact):
     inside = np.linalg.norm(voxel_centres(grid) - table.centre, axis=-1) < table.radius
 
     def overlap(weighted):
-        fused = SoftMaximum(grid, 4 * grid.spacing, 10.0, distrust=4.0, discontinuity=0.02)
+        fused = SoftMaximum(grid, 4 * grid.spacing, 10.0, distrust=40.0, discontinuity=0.02)
         for view, depth, agreement in zip(table.views, depths, agreements, strict=True):
             fused.add(view, depth, *((rate(agreement), agreement.free_depth) if weighted else ()))
         solid = fused.result()[0] < 0

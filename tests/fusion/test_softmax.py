@@ -13,7 +13,7 @@ from threedfs.types import Camera, View, VoxelGrid
 FACING = View("a", Camera(81, 81, 100.0, 100.0, 40.0, 40.0), np.eye(4))
 
 
-def fuse(grid, votes, *, clip=0.1, hardness=10.0, distrust=4.0, **settings):
+def fuse(grid, votes, *, clip=0.1, hardness=10.0, distrust=40.0, **settings):
     fused = SoftMaximum(grid, clip, hardness, distrust=distrust, discontinuity=0.02, **settings)
     for vote in votes:
         fused.add(*vote)
@@ -148,6 +148,20 @@ def test_distrusted_vote_loses_but_decides_alone():
     assert fuse(grid, [empty[:2], solid[:2]])[0].item() == pytest.approx(1, abs=1e-6)
     # Nothing contradicts that the ray is free up to 1.6, so there the vote counts whatever the pixel's trust.
     assert fuse(grid, [(*empty, np.full(shape, 1.6)), solid])[0].item() == pytest.approx(1, abs=1e-6)
+
+
+def test_view_that_does_not_see_a_voxel_is_not_heard_where_another_sees_it():
+    """Exact: hidden votes count only among themselves, and without confidence as in the paper."""
+    grid = VoxelGrid(np.array([0.0, 0.0, 1.5]), 0.01, (1, 1, 1))
+    trusted = np.ones((81, 81))
+    seeing = (FACING, np.full((81, 81), 1.55), trusted)
+    hiding = (FACING, np.full((81, 81), 1.3), trusted)
+    settings = {"hardness": 0.0, "hidden": 30.0}
+    assert fuse(grid, [seeing, hiding], **settings)[0].item() == pytest.approx(0.5, abs=1e-5)
+    assert fuse(grid, [hiding], **settings)[0].item() == -1
+    assert fuse(grid, [seeing[:2], hiding[:2]], **settings)[0].item() == pytest.approx(-0.25, abs=1e-5)
+    nearer = (FACING, np.full((81, 81), 1.45), trusted)  # half a clip distance behind it is still seen
+    assert fuse(grid, [seeing, nearer], **settings)[0].item() == pytest.approx(0.0, abs=1e-5)
 
 
 def test_rejects_maps_of_another_size():

@@ -156,17 +156,18 @@ def test_edited_object_films_its_takes_again_and_no_other(project):
 
 def test_methods_share_what_they_have_in_common(finished):
     """Contract: each further method adds its own stages and runs nothing again."""
-    (finished.folder / "all.yaml").write_text("methods: [fused_sdf, deformed_sdf, tsdf, hard_maximum, poisson]\n")
+    methods = ("fused_sdf", "deformed_sdf", "tsdf", "soft_maximum", "hard_maximum")
+    (finished.folder / "all.yaml").write_text(f"methods: [{', '.join(methods)}, poisson]\n")
     output = finished.run("--configfile", "all.yaml")
-    expected = {"stereo": 2, "densify": 1, "deform": 1, "fuse_baseline": 2, "object": 3, "poisson": 1, "evaluate": 4}
+    expected = {"stereo": 2, "densify": 1, "deform": 1, "fuse_baseline": 3, "object": 4, "poisson": 1, "evaluate": 5}
     assert jobs_done(output) == Counter({**expected, "collect": 1})
     fields = {
         method: json.loads((finished.folder / f"results/sample/11_object/{method}/mesh.ply").read_text())["inputs"][
             "field"
         ]
-        for method in ("fused_sdf", "deformed_sdf", "tsdf", "hard_maximum")
+        for method in methods
     }
-    assert len(set(fields.values())) == 4
+    assert len(set(fields.values())) == 5
     assert "Nothing to be done" in finished.run("--configfile", "all.yaml")
 
 

@@ -34,5 +34,14 @@ def code_of(stage, *modules):
 
 
 def settings_of(stage):
-    """Return the slice of the configuration that a stage reads."""
-    return config.get(stage, {})
+    """Return a function of the wildcards: the slice of the configuration that a stage reads, and the sequence's own."""
+
+    def find(wildcards):
+        own = (
+            SEQUENCES[wildcards.sequence]["settings"]
+            if "sequence" in wildcards.keys()
+            else {}
+        )
+        return config.get(stage, {}) | own.get(stage, {})
+
+    return find

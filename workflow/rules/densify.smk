@@ -24,7 +24,7 @@ rule densify:
         code=code_of("densify"),
         settings=settings_of("densify"),
         seed=config["seed"],
-        labels=lambda wildcards: {"cuda": finds_cuda()},
+        labels=lambda wildcards: {"cuda": finds_cuda(wildcards)},
     message:
         "Find surface points of {wildcards.sequence}."
     script:

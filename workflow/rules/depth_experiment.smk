@@ -29,7 +29,7 @@ rule depth_trial:
         seed=config["seed"],
         folders=fingerprint_of("truth_masks", "truth_cameras", "truth_depth"),
         labels=lambda wildcards: {
-            "depth_settings": settings_of("depth"),
+            "depth_settings": settings_of("depth")(wildcards),
             "depth_scale": SEQUENCES[wildcards.sequence]["depth_scale"],
             "depth_camera": SEQUENCES[wildcards.sequence]["depth_camera"],
             "intrinsics": SEQUENCES[wildcards.sequence]["intrinsics"],
@@ -47,7 +47,10 @@ rule depth_experiment:
             choose=lambda names, sequence: choose_with_depth(
                 names,
                 sequence["truth_depth"],
-                config["depth_experiment"]["keyframes"],
+                (
+                    config["depth_experiment"]
+                    | sequence["settings"].get("depth_experiment", {})
+                )["keyframes"],
             ),
         ),
     output:

@@ -4,6 +4,7 @@ FIELDS = {  # where each method that has one finds the object's field
     "fused_sdf": "07_fusion/object.zarr.zip",
     "deformed_sdf": "09_deform/volume.zarr.zip",
     "tsdf": "07_fusion/baseline/tsdf.zarr.zip",
+    "soft_maximum": "07_fusion/baseline/soft_maximum.zarr.zip",
     "hard_maximum": "07_fusion/baseline/hard_maximum.zarr.zip",
 }
 
@@ -67,9 +68,9 @@ def field_of_method(wildcards):
     return f"results/{wildcards.sequence}/{FIELDS[wildcards.method]}"
 
 
-def finds_cuda():
+def finds_cuda(wildcards):
     """Say whether COLMAP can match patches here; asked only where the configuration leaves it open."""
-    settings = settings_of("densify")
+    settings = settings_of("densify")(wildcards)
     if not settings["points"] or settings["engine"] != "auto":
         return False
     from threedfs.colmap.workspace import has_cuda
@@ -79,10 +80,13 @@ def finds_cuda():
 
 def if_matched_here(pattern):
     """Return an input function: one file per keyframe, if our own patch match is to make the points, or nothing."""
-    each, settings = per_keyframe(pattern), settings_of("densify")
+    each = per_keyframe(pattern)
 
     def find(wildcards):
-        engine = choose_engine(settings["points"], settings["engine"], finds_cuda())
+        settings = settings_of("densify")(wildcards)
+        engine = choose_engine(
+            settings["points"], settings["engine"], finds_cuda(wildcards)
+        )
         return each(wildcards) if engine == "cpu" else []
 
     return find

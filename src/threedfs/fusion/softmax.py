@@ -29,9 +29,12 @@ class SoftMaximum:
     """Fuses the signed distances of views into one field on a grid, holding one view at a time.
 
     Differs from the paper, where confidence is given: a vote of trust c enters Eq. 15 as
-    exp(h (S - distrust (1 - c))), so that a view that others contradict loses against them instead of carving. Trust
+    exp(h S - distrust (1 - c)), so that a view that others contradict loses against them instead of carving; and a
+    vote on a voxel that lies farther behind the view's surface than the clip distance enters as
+    exp(h S - distrust (1 - c) - hidden), since the view does not see it. Then no high h is needed for views that see
+    a voxel to prevail, and with a low one it is their mean: a maximum takes the one that errs most. Trust
     is the confidence times how squarely the view faces the surface (`facing`), smoothed (`trust_blur`); votes for
-    space that other views leave free are trusted fully from `_FREE_RAMP` clip distances on. Without confidence
+    space that other views leave free are trusted fully from 1 + `_FREE_RAMP` clip distances on. Without confidence
     every vote counts the same, as in the paper.
 
     Differs from the paper always: the sums of Eq. 15 run over the views that see a voxel, not over all, since the
@@ -45,7 +48,9 @@ class SoftMaximum:
     hardness : float
         h of Eq. 15: 0 gives the mean, infinity the maximum.
     distrust : float
-        Handicap of a vote without any confidence, in units of the clipped distance.
+        Handicap of a vote without any confidence: what is taken off its exponent. Acts on views with confidence.
+    hidden : float
+        Handicap of a vote on a voxel behind the view's surface. Acts on views with confidence.
     discontinuity : float
         Relative step of inverse depth between neighbouring pixels above which they lie on different surfaces.
     facing : float
@@ -67,6 +72,7 @@ class SoftMaximum:
         *,
         distrust: float,
         discontinuity: float,
+        hidden: float = 0.0,
         facing: float = 0.0,
         trust_blur: float = 0.0,
         threads: int = 1,
@@ -77,6 +83,7 @@ class SoftMaximum:
         self._seen = np.zeros(grid.shape, np.uint8)
         self._settings = (float(clip_distance), float(hardness), float(discontinuity))
         self._distrust = distrust
+        self._hidden = float(hidden)
         self._facing = facing
         self._trust_blur = trust_blur
         self._threads = threads
@@ -112,9 +119,9 @@ class SoftMaximum:
         for name, values in maps.items():
             if values is not None:
                 check_shape(values, shape, f"{name} of view {view.name}")
-        hardness = self._settings[1]
         trust = np.ones(shape) if confidence is None else self._rate(view.camera, depth, confidence)
-        handicap = hardness * self._distrust * (1.0 - trust)
+        handicap = self._distrust * (1.0 - trust)
+        hidden = 0.0 if confidence is None else self._hidden
         free = np.zeros(shape, np.float32) if free_depth is None else free_depth.astype(np.float32)
         numba.set_num_threads(max(1, min(self._threads, numba.config.NUMBA_NUM_THREADS)))
         _add_view(
@@ -125,6 +132,7 @@ class SoftMaximum:
             invert_depth(depth),
             handicap,
             free,
+            hidden,
             *self._settings,
         )
 
@@ -180,7 +188,7 @@ def estimate_fusion_memory(grid_shape: tuple[int, int, int], image_shape: tuple[
 
 @njit(cache=True, parallel=True)
 def _add_view(
-    weighted, weight, seen, rays, inverse_depth, handicap, free_depth, clip_distance, hardness, discontinuity
+    weighted, weight, seen, rays, inverse_depth, handicap, free_depth, hidden, clip_distance, hardness, discontinuity
 ):
     nx, ny, nz = seen.shape
     for ix in prange(nx):
@@ -194,6 +202,8 @@ def _add_view(
                 penalty = handicap[row, column]
                 if distance > 1.0 and voxel_depth <= free_depth[row, column]:
                     penalty *= max(0.0, 1.0 - (distance - 1.0) / _FREE_RAMP)
+                elif distance < -1.0:
+                    penalty += hidden
                 distance = min(1.0, max(-1.0, distance))
                 # The exponent is shifted by h so that it never grows above 0; the ratio stays the same.
                 vote = math.exp(hardness * (distance - 1.0) - penalty)

@@ -11,7 +11,9 @@ from threedfs.errors import UserError
 from threedfs.params.rendered import RENDERED_KEYS
 from threedfs.params.schema import declared_stages, make_params, stage_schema
 
-METHODS = ("fused_sdf", "deformed_sdf", "tsdf", "hard_maximum", "poisson")
+METHODS = ("fused_sdf", "deformed_sdf", "tsdf", "soft_maximum", "hard_maximum", "poisson")
+NAMES_OF_SEQUENCES = ("sequences", "cylinder_sequences")
+"""Parameters that name sequences, and mean nothing for a single one."""
 SEQUENCE_NAME = r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$"
 
 _PATH = {"type": ["string", "null"]}
@@ -40,6 +42,11 @@ def configuration_schema() -> dict[str, Any]:
             "calibration": _PATH,
             "object": {"type": "boolean"},
             "truth": {"type": ["object", "null"], "additionalProperties": False, "properties": truth},
+            "settings": {
+                "type": "object",
+                "additionalProperties": False,
+                "properties": {stage: {"type": "object"} for stage in declared_stages()},
+            },
         },
     }
     general = {
@@ -76,17 +83,28 @@ def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) ->
     UserError
         For the first fault, in the order of the keys; values that do not fit each other come last.
     """
-    faults = jsonschema.Draft202012Validator(schema).iter_errors(config)
-    fault = min(faults, key=lambda fault: [str(part) for part in fault.absolute_path], default=None)
-    if fault is not None:
-        raise UserError(_explain(fault))
+    _check_against(schema, config)
     for stage, declared in declared_stages().items():
         make_params(declared, config[stage])
+    for name, entry in (config["sequences"] or {}).items():
+        for stage, own in (entry.get("settings") or {}).items():
+            where = f"sequences.{name}.settings.{stage}"
+            if set(own) & set(NAMES_OF_SEQUENCES):
+                raise UserError(f"configuration, {where}: expected no names of sequences; give them under {stage}.")
+            _check_against(schema["properties"][stage], {**config[stage], **own}, where)
+            make_params(declared_stages()[stage], {**config[stage], **own})
 
 
-def _explain(fault: jsonschema.ValidationError) -> str:
+def _check_against(schema: Mapping[str, Any], values: Mapping[str, Any], where: str = "") -> None:
+    faults = jsonschema.Draft202012Validator(schema).iter_errors(values)
+    fault = min(faults, key=lambda fault: [str(part) for part in fault.absolute_path], default=None)
+    if fault is not None:
+        raise UserError(_explain(fault, where))
+
+
+def _explain(fault: jsonschema.ValidationError, start: str) -> str:
     """Say in one sentence where a configuration is wrong, what was expected and what came."""
-    path = ".".join(str(part) for part in fault.absolute_path)
+    path = ".".join([*([start] if start else []), *(str(part) for part in fault.absolute_path)])
     where = f"configuration, {path}" if path else "configuration"
     limit, value = fault.validator_value, fault.instance
     match fault.validator:

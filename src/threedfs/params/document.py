@@ -32,6 +32,7 @@ video: null
 #     intrinsics: null              # [fx, fy, cx, cy], for given cameras that are poses alone
 #     calibration: null             # photos or a video of a checkerboard
 #     object: true                  # false: no object is looked for, only the depth experiment runs
+#     settings: {depth: {iterations: 12}}  # its own values of the parameters below
 #     truth: {masks: null, cameras: null, mesh: null, depth: null, depth_scale: 1000, depth_camera: null}
 #   dragon:
 #     rendered: dragon              # a take of the synthetic data set, with its truth
@@ -40,7 +41,7 @@ sequences: {}
 # Go on without the sequences whose source is absent; they are named at the start.
 skip_absent: false
 
-# How the object is made: fused_sdf, deformed_sdf, tsdf, hard_maximum, poisson.
+# How the object is made: fused_sdf, deformed_sdf, tsdf, soft_maximum, hard_maximum, poisson.
 methods: [fused_sdf]
 
 # Of every random choice.
@@ -119,10 +120,12 @@ _KEYS = {
     "sequences.<name>.truth.depth_camera": "for depth images that are not registered to the colour images: "
     "{intrinsics: [fx, fy, cx, cy], offset: [x, y, z]} of the depth camera, its place in the colour camera's axes in "
     "units of the true cameras; null: both images are of one camera",
+    "sequences.<name>.settings": "its own values of parameters, by section, in place of those of the whole run: "
+    "`{depth: {photometric_weight: 10}}`",
     "skip_absent": "go on without the sequences whose source is absent; they are named at the start",
-    "methods": "how the object is made, each with a mesh, masks and figures of its own: `fused_sdf` (soft maximum), "
-    "`deformed_sdf` (its zero level moved onto surface points), `tsdf` (KinectFusion's weighted average), "
-    "`hard_maximum` (Eq. 13), `poisson` (the surface points alone)",
+    "methods": "how the object is made, each with a mesh, masks and figures of its own: `fused_sdf` (the views "
+    "weighed by trust), `deformed_sdf` (its zero level moved onto surface points), `tsdf` (KinectFusion's weighted "
+    "average), `soft_maximum` (Eq. 15 as printed), `hard_maximum` (Eq. 13), `poisson` (the surface points alone)",
     "seed": "of every random choice",
     "store": "folder of finished work, and of the kernels compiled for it",
 }

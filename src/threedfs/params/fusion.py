@@ -23,8 +23,8 @@ class FusionSettings:
         minimum=2.0,
     )
     softmax_hardness: float = parameter(
-        4.0,
-        "0 makes the soft maximum over views a mean (paper: 10)",
+        0.0,
+        "0 makes the soft maximum over views a mean of their votes (paper: 10)",
         symbol="h",
         equation="Eq. 15",
         minimum=0.0,
@@ -37,11 +37,18 @@ class FusionSettings:
         choices=("plain", "consistency"),
     )
     distrust: float = parameter(
-        4.0,
-        "handicap in the soft maximum of a vote that no other view agrees with; acts with consistency weighting",
-        unit="clip distance",
+        16.0,
+        "handicap in the soft maximum, taken off the exponent, of a vote that no other view agrees with; acts with "
+        "consistency weighting",
         minimum=0.0,
-        maximum=5.0,
+        maximum=100.0,
+    )
+    hidden: float = parameter(
+        12.0,
+        "handicap of a vote on a voxel farther behind a view's surface than the clip distance, which the view does not "
+        "see (paper: none); acts with consistency weighting",
+        minimum=0.0,
+        maximum=100.0,
     )
     depth_discontinuity: float = parameter(
         0.02,

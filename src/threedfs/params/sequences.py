@@ -64,7 +64,8 @@ def list_sequences(
     -------
     dict of str to dict
         `SEQUENCE_FILES`: paths or None; dataset: str; intrinsics: list of float or None; object: bool; depth_scale:
-        float; depth_camera: dict or None; rendered: the take that is filmed for the sequence, or None. The paths of a
+        float; depth_camera: dict or None; settings: dict of sections of the configuration, its own
+        values; rendered: the take that is filmed for the sequence, or None. The paths of a
         rendered sequence are results of the run.
 
     Raises
@@ -167,4 +168,5 @@ def _flatten(entry: Mapping[str, Any]) -> dict[str, Any]:
         "object": entry.get("object", True),
         "depth_scale": truth.get("truth_depth_scale", _DEPTH_SCALE),
         "depth_camera": truth.get("truth_depth_camera"),
+        "settings": entry.get("settings", {}),
     }

@@ -1,11 +1,13 @@
-"""Fuse the object's depth maps by a method that the soft maximum is compared with."""
+"""Fuse the object's depth maps by a method that ours is compared with."""
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 
 from threedfs.fusion.fuse import fuse_views, limit_clip_distance
 from threedfs.fusion.hard_maximum import HardMaximum
+from threedfs.fusion.softmax import SoftMaximum
 from threedfs.fusion.weighted_average import WeightedAverage
 from threedfs.geometry.grid import cover_box
 from threedfs.io.keyframes import read_keyframes
@@ -14,7 +16,14 @@ from threedfs.io.votes import read_votes
 from threedfs.job import Job
 from threedfs.params.fuse_baseline import FuseBaselineParams
 
-_FUSIONS = {"tsdf": WeightedAverage, "hard_maximum": HardMaximum}
+_PRINTED_HARDNESS = 10.0
+"""Of Eq. 15 (Section 3.3.1)."""
+
+_FUSIONS = {
+    "tsdf": WeightedAverage,
+    "hard_maximum": HardMaximum,
+    "soft_maximum": partial(SoftMaximum, hardness=_PRINTED_HARDNESS, distrust=0.0),
+}
 
 
 def run(
@@ -27,7 +36,7 @@ def run(
     params: FuseBaselineParams,
     job: Job,
 ) -> None:
-    """Lay the grid over the object's box, fuse, and write the volume; every view counts, none is trusted less."""
+    """Lay the grid over the object's box, fuse, and write the volume; whether views agree does not matter."""
     place = read_support(support)
     grid = cover_box(place.low, place.high, params.longest_side)
     clip_distance = limit_clip_distance(

@@ -36,6 +36,7 @@ def run(
         clip_distance,
         params.softmax_hardness,
         distrust=params.distrust,
+        hidden=params.hidden,
         discontinuity=params.depth_discontinuity,
         facing=params.facing,
         trust_blur=params.trust_blur,

@@ -49,6 +49,7 @@ def run(
         params.clip_distance * grid.spacing,
         params.softmax_hardness,
         distrust=params.distrust,
+        hidden=params.hidden,
         discontinuity=params.depth_discontinuity,
         facing=params.facing,
         trust_blur=params.trust_blur,
