@@ -14,7 +14,7 @@ rule deform:
         "results/{sequence}/benchmarks/deform.tsv"
     conda:
         "../../envs/threedfs.yaml"
-    threads: 2
+    threads: THREADS
     resources:
         mem_mb=3000,
     params:

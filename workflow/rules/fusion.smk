@@ -13,7 +13,7 @@ rule consistency:
         "results/{sequence}/benchmarks/consistency.tsv"
     conda:
         "../../envs/threedfs.yaml"
-    threads: 2
+    threads: THREADS
     resources:
         mem_mb=2000,
     params:
@@ -40,7 +40,7 @@ rule fuse_scene:
         "results/{sequence}/benchmarks/fuse_scene.tsv"
     conda:
         "../../envs/threedfs.yaml"
-    threads: 2
+    threads: THREADS
     resources:
         mem_mb=3000,
     params:
@@ -94,7 +94,7 @@ rule fuse_object:
         "results/{sequence}/benchmarks/fuse_object.tsv"
     conda:
         "../../envs/threedfs.yaml"
-    threads: 2
+    threads: THREADS
     resources:
         mem_mb=3000,
     params:
@@ -120,7 +120,7 @@ rule fuse_baseline:
         "results/{sequence}/benchmarks/fuse_baseline/{fusion}.tsv"
     conda:
         "../../envs/threedfs.yaml"
-    threads: 2
+    threads: THREADS
     resources:
         mem_mb=3000,
     params:

@@ -19,7 +19,7 @@ rule poses:
         "results/{sequence}/benchmarks/poses.tsv"
     conda:
         "../../envs/threedfs.yaml"
-    threads: THREADS_OF_POSES
+    threads: THREADS
     resources:
         mem_mb=3000,
     params:

@@ -19,7 +19,7 @@ rule render:
         sequence="|".join(map(re.escape, RENDERED)) or "(?!)",
     conda:
         "../../envs/threedfs.yaml"
-    threads: 2
+    threads: THREADS
     resources:
         mem_mb=2500,
     params:
