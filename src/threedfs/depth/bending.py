@@ -42,8 +42,8 @@ def assemble_prior(weight: np.ndarray, prior: str) -> np.ndarray:
         Squared gradient; squared second derivatives along the axes; these and twice the squared mixed
         derivative, the bending energy that an in-plane rotation of the camera leaves unchanged (Eq. 3).
 
-    Differences between pixel centres (gradients, the mixed derivative) take the least weight of their pixels, so
-    that an edge one pixel wide cuts them too.
+    Differs from the paper, whose lambda_s(u) is one weight a pixel: differences between pixel centres (gradients, the
+    mixed derivative) take the least weight of their pixels, so that an edge one pixel wide cuts them too.
 
     Returns
     -------

@@ -27,7 +27,7 @@ def multiscale_gradient(
     image : (H, W, 3) uint8
         RGB.
     valid : (H, W) bool
-        Pixels that show the scene; elsewhere, and at the border, the strength is 0.
+        Pixels that show the scene; elsewhere, and at its border, the strength is 0.
     scales : sequence of float
         Standard deviations of the Gaussian smoothing, pixels.
     full_strength_percentile : float

@@ -17,7 +17,8 @@ def scene_region(
     Differs from the paper: the points are the sparse ones, not LSD-SLAM's semi-dense cloud; along each axis it
     reaches at least `least_reach` and at most `reach` from what the cameras look at. Points far behind the object
     would make the region so wide that the object is a few voxels; points mostly on the floor would make it so low
-    that a tall object is cut off. `least_reach` 0 and a large `reach` give the paper's limits.
+    that a tall object is cut off. `least_reach` 0 and a large `reach` give the paper's
+    limits where what the cameras look at lies between them.
 
     Parameters
     ----------

@@ -21,7 +21,8 @@ class WeightedAverage:
     """Fuses truncated signed distances of views into their weighted mean, holding one view at a time.
 
     A view says nothing of a voxel farther behind its surface than the truncation; in front of it votes are clipped.
-    A vote weighs by the cosine between the surface's normal and the ray.
+    A vote weighs by the cosine between the surface's normal and the ray; KinectFusion also divides by the distance,
+    which hardly differs between views around one object, and measures along the depth axis instead of the ray.
 
     A voxel that some view looks towards and all have only behind their surfaces is taken for solid (-1), so that the
     inside of the object is not a hollow: the baseline is to give a closed mesh like the others.

@@ -9,7 +9,10 @@ from threedfs.params.field import parameter
 
 @dataclass(frozen=True)
 class DepthTrialParams:
-    """What is given to the depth maps of a keyframe in the depth experiment; all else is as under depth."""
+    """What is given to the depth maps of a keyframe in the depth experiment.
+
+    All else is as under depth, without stereo.
+    """
 
     measurements: tuple[int, ...] = parameter(
         (100, 1000),

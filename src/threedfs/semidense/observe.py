@@ -1,7 +1,4 @@
-"""Search along epipolar lines, and Kalman fusion of what is found (Engel, Sturm, Cremers 2013, Sections 2.2, 2.3).
-
-Both live in one module because numba's cache does not notice edits in the modules that a kernel calls into.
-"""
+"""Search along epipolar lines, and Kalman fusion of what is found (Engel, Sturm, Cremers 2013, Sections 2.2, 2.3)."""
 
 from __future__ import annotations
 

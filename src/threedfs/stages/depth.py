@@ -30,7 +30,11 @@ def run(
     params: DepthParams,
     job: Job,
 ) -> None:
-    """Read a keyframe with its neighbours, measurements and edges; write its depth map."""
+    """Read a keyframe with its neighbours, measurements and edges; write its depth map.
+
+    Differs from the paper: where views are far apart, stereo matches are measurements too (`keyframes.stereo_angle`),
+    and depth in front of the keyframe's range is left out.
+    """
     cv2.setNumThreads(1)  # a keyframe is one job of one core
     frames = read_frames(undistorted)
     entry = read_keyframe(keyframes, keyframe)

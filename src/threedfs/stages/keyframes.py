@@ -34,6 +34,9 @@ def run(
 ) -> None:
     """Read frames, poses and points; write keyframes.json.
 
+    Differs from the paper: LSD-SLAM's criterion (3.1) only parts the path into sectors; the sharpest frame of each
+    is its keyframe, and frames with a true mask always are.
+
     Raises
     ------
     UserError

@@ -61,6 +61,8 @@ def run(
 ) -> None:
     """Read the frames and, if given, cameras or a calibration; write poses.json and points.zarr.zip.
 
+    Differs from the paper: structure from motion with loop closure in place of LSD-SLAM (3.1).
+
     Raises
     ------
     UserError
