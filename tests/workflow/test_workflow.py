@@ -235,7 +235,7 @@ def test_killed_run_goes_on_to_the_same_bytes(finished):
     assert not any(scratch.iterdir())
 
 
-def wait_for(condition, process, seconds=60):
+def wait_for(condition, process, seconds=240):
     """Wait until a condition holds while a process runs."""
     end = time.monotonic() + seconds
     while not condition():

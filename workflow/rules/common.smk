@@ -17,8 +17,8 @@ except UserError as fault:
 
 OBJECTS = [name for name in SEQUENCES if SEQUENCES[name]["object"]]
 TRIED = [name for name in SEQUENCES if SEQUENCES[name]["depth_experiment"]]
-# The few jobs that can use two cores get them where there is one sequence. Of several, others fill the second core: it
-# would idle while such a job waits for both, and through half of the work on poses.
+# Jobs on a sequence that can use two cores get them where there is one sequence. Of several, others fill the second core:
+# it would idle while such a job waits for both, and through half of the work on poses.
 THREADS = 2 if len(SEQUENCES) == 1 else 1
 STORE_DIGESTS = InputDigests(Path(config["store"]) / "digests")
 

@@ -19,7 +19,7 @@ rule render:
         sequence="|".join(map(re.escape, RENDERED)) or "(?!)",
     conda:
         "../../envs/threedfs.yaml"
-    threads: THREADS
+    threads: 2  # one film at a time: the next sequence of the same take finds it in the store
     resources:
         mem_mb=2500,
     params:
