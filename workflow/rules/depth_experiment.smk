@@ -44,13 +44,10 @@ rule depth_experiment:
     input:
         trials=per_keyframe(
             "results/{sequence}/12_depth_experiment/{keyframe}.zarr.zip",
-            choose=lambda names, sequence: choose_with_depth(
+            choose=lambda names, wildcards: choose_with_depth(
                 names,
-                sequence["truth_depth"],
-                (
-                    config["depth_experiment"]
-                    | sequence["settings"].get("depth_experiment", {})
-                )["keyframes"],
+                SEQUENCES[wildcards.sequence]["truth_depth"],
+                settings_of("depth_experiment")(wildcards)["keyframes"],
             ),
         ),
     output:

@@ -44,13 +44,11 @@ def read_keyframes(wildcards):
     return json.loads(Path(keyframes).read_text())
 
 
-def per_keyframe(pattern, choose=lambda names, sequence: names):
+def per_keyframe(pattern, choose=lambda names, wildcards: names):
     """Return an input function: one file per (chosen) keyframe, in their order."""
 
     def find(wildcards):
-        names = choose(
-            read_keyframes(wildcards)["order"], SEQUENCES[wildcards.sequence]
-        )
+        names = choose(read_keyframes(wildcards)["order"], wildcards)
         return expand(pattern, keyframe=names, allow_missing=True)
 
     return find

@@ -50,7 +50,8 @@ class SoftMaximum:
     distrust : float
         Handicap of a vote without any confidence: what is taken off its exponent. Acts on views with confidence.
     hidden : float
-        Handicap of a vote on a voxel behind the view's surface. Acts on views with confidence.
+        Handicap of a vote on a voxel farther behind the view's surface than the clip distance, taken off its exponent.
+        Acts on views with confidence.
     discontinuity : float
         Relative step of inverse depth between neighbouring pixels above which they lie on different surfaces.
     facing : float
