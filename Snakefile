@@ -22,6 +22,7 @@ include: "workflow/rules/depth.smk"
 include: "workflow/rules/fusion.smk"
 include: "workflow/rules/densify.smk"
 include: "workflow/rules/deform.smk"
+include: "workflow/rules/segment.smk"
 include: "workflow/rules/object.smk"
 include: "workflow/rules/depth_experiment.smk"
 include: "workflow/rules/evaluate.smk"
@@ -30,12 +31,12 @@ include: "workflow/rules/evaluate.smk"
 rule all:
     default_target: True
     input:
-        expand(
-            "results/{sequence}/11_object/{method}/{artifact}",
-            sequence=OBJECTS,
-            method=config["methods"],
-            artifact=["mesh.ply", "masks"],
-        ),
+        [
+            f"results/{sequence}/11_object/{method}/{name}"
+            for sequence in OBJECTS
+            for method in config["methods"]
+            for name in results_of_method(method)
+        ],
         "results/metrics.csv",
 
 

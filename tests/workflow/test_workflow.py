@@ -128,7 +128,8 @@ def test_rendered_sequences_of_one_take_are_filmed_once_and_bring_their_truth(pr
     text = "sequences: {one: {rendered: books}, other: {rendered: books, true_cameras: true}}\n"
     (project.folder / "own.yaml").write_text(text)
     output = project.run("--configfile", "own.yaml")
-    assert jobs_done(output)["render"] == 1 and jobs_taken(output)["render"] == 1
+    assert jobs_done(output)["render"] == 1 and jobs_taken(output)["render"] == 0
+    assert not (project.folder / "results/other/00_render").exists()
     # Two equal jobs may run side by side; then both compute.
     assert jobs_done(output)["frames"] + jobs_taken(output)["frames"] == 2 and jobs_done(output)["poses"] == 2
     results = project.folder / "results"
@@ -169,6 +170,25 @@ def test_methods_share_what_they_have_in_common(finished):
     }
     assert len(set(fields.values())) == 5
     assert "Nothing to be done" in finished.run("--configfile", "all.yaml")
+
+
+def test_methods_of_the_segmentation_share_their_cuts(finished):
+    """Contract: two cuts serve six methods; those of pixels have masks and no mesh, and are measured without one."""
+    cuts = {"gc_2d": "images", "gc_2d3d_pixel": "joint", "gc_2d3d_voxel": "joint", "sdf_2d3d_voxel": "joint"}
+    (finished.folder / "cuts.yaml").write_text(f"methods: [{', '.join(cuts)}, gc_select, volumetric_gc]\n")
+    output = finished.run("--configfile", "cuts.yaml")
+    expected = {"superpixels": 2, "segment": 2, "volumetric_cut": 1, "cut_object": 4, "pixel_masks": 2, "evaluate": 6}
+    assert jobs_done(output) == Counter({**expected, "collect": 1})
+    results = finished.folder / "results/sample"
+    for method, cut in cuts.items():
+        made = json.loads((results / f"11_object/{method}/silhouettes.zarr.zip").read_text())
+        labels = results / f"10_segment/{cut}.zarr.zip"
+        assert made["inputs"]["labels"] == hashlib.sha256(labels.read_bytes()).hexdigest()
+        assert (results / f"11_object/{method}/mesh.ply").exists() is ("pixel" not in method and method != "gc_2d")
+    with_field = json.loads((results / "11_object/sdf_2d3d_voxel/mesh.ply").read_text())
+    assert with_field["inputs"]["field"] is not None
+    (finished.folder / "deformed.yaml").write_text("methods: [gc_2d3d_pixel]\nsegment: {field: deformed}\n")
+    assert jobs_done(finished.run("--configfile", "deformed.yaml"))["deform"] == 1
 
 
 def test_points_switched_off_need_no_stereo(finished):

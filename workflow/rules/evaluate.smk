@@ -5,7 +5,7 @@ rule evaluate:
     input:
         poses="results/{sequence}/02_poses/poses.json",
         keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        mesh="results/{sequence}/11_object/{method}/mesh.ply",
+        mesh=mesh_of_method,
         masks="results/{sequence}/11_object/{method}/masks",
         depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
         frames="results/{sequence}/01_frames/frames.zarr.zip",

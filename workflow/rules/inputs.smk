@@ -7,6 +7,13 @@ FIELDS = {  # where each method that has one finds the object's field
     "soft_maximum": "07_fusion/baseline/soft_maximum.zarr.zip",
     "hard_maximum": "07_fusion/baseline/hard_maximum.zarr.zip",
 }
+CUTS = {  # which labels of voxels the other methods with a mesh take it from
+    "volumetric_gc": "volumetric",
+    "gc_2d3d_voxel": "joint",
+    "gc_select": "joint",
+    "sdf_2d3d_voxel": "joint",
+}
+PIXEL_CUTS = {"gc_2d": "images", "gc_2d3d_pixel": "joint"}  # methods of masks alone
 
 
 def given(key):
@@ -59,6 +66,34 @@ def if_wide(pattern):
     return lambda wildcards: (
         pattern if read_keyframes(wildcards)["needs_stereo"] else []
     )
+
+
+def results_of_method(method):
+    """Return the names of what a method makes: those of pixels have no mesh."""
+    return ["masks"] if method in PIXEL_CUTS else ["mesh.ply", "masks"]
+
+
+def mesh_of_method(wildcards):
+    """Return a method's mesh, or nothing for one that has none."""
+    has_mesh = "mesh.ply" in results_of_method(wildcards.method)
+    return "results/{sequence}/11_object/{method}/mesh.ply" if has_mesh else []
+
+
+def labels_of_method(wildcards):
+    """Return the labels that a method takes the object from."""
+    cut = (CUTS | PIXEL_CUTS)[wildcards.method]
+    return f"results/{wildcards.sequence}/10_segment/{cut}.zarr.zip"
+
+
+def field_to_segment(wildcards):
+    """Return the field that the segmentation weighs."""
+    method = f"{settings_of('segment')(wildcards)['field']}_sdf"
+    return f"results/{wildcards.sequence}/{FIELDS[method]}"
+
+
+def field_to_cut(wildcards):
+    """Return the field whose zero level labels cut out, or nothing for methods of labels alone."""
+    return field_to_segment(wildcards) if wildcards.method == "sdf_2d3d_voxel" else []
 
 
 def field_of_method(wildcards):

@@ -63,3 +63,66 @@ rule poisson:
         "Mesh the surface points of {wildcards.sequence}."
     script:
         "../scripts/run_stage.py"
+
+
+rule cut_object:
+    input:
+        labels=labels_of_method,
+        field=field_to_cut,
+        support="results/{sequence}/07_fusion/support.json",
+        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        poses="results/{sequence}/02_poses/poses.json",
+        frames="results/{sequence}/01_frames/frames.zarr.zip",
+    output:
+        mesh="results/{sequence}/11_object/{method}/mesh.ply",
+        silhouettes="results/{sequence}/11_object/{method}/silhouettes.zarr.zip",
+        masks=directory("results/{sequence}/11_object/{method}/masks"),
+    log:
+        "results/{sequence}/logs/object/{method}.log",
+    benchmark:
+        "results/{sequence}/benchmarks/object/{method}.tsv"
+    wildcard_constraints:
+        method="|".join(CUTS),
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 1
+    resources:
+        mem_mb=3000,
+    params:
+        code=code_of("cut_object"),
+        settings=settings_of("cut_object"),
+        seed=config["seed"],
+    message:
+        "Mesh the object of {wildcards.sequence} by {wildcards.method}."
+    script:
+        "../scripts/run_stage.py"
+
+
+rule pixel_masks:
+    input:
+        labels=labels_of_method,
+        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        poses="results/{sequence}/02_poses/poses.json",
+        frames="results/{sequence}/01_frames/frames.zarr.zip",
+    output:
+        silhouettes="results/{sequence}/11_object/{method}/silhouettes.zarr.zip",
+        masks=directory("results/{sequence}/11_object/{method}/masks"),
+    log:
+        "results/{sequence}/logs/object/{method}.log",
+    benchmark:
+        "results/{sequence}/benchmarks/object/{method}.tsv"
+    wildcard_constraints:
+        method="|".join(PIXEL_CUTS),
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 1
+    resources:
+        mem_mb=1000,
+    params:
+        code=code_of("pixel_masks"),
+        settings=settings_of("pixel_masks"),
+        seed=config["seed"],
+    message:
+        "Masks of {wildcards.sequence} by {wildcards.method}."
+    script:
+        "../scripts/run_stage.py"

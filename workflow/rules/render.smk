@@ -1,7 +1,12 @@
 # 00: film a take of the synthetic data set, where a sequence is rendered.
 from threedfs.synthetic.takes import take_module
 
-RENDERED = [name for name in SEQUENCES if SEQUENCES[name]["rendered"]]
+RENDERED = [  # sequences that are filmed; others of the same take share the film
+    name
+    for name in SEQUENCES
+    if SEQUENCES[name]["rendered"]
+    and SEQUENCES[name]["source"].startswith(f"results/{name}/")
+]
 
 
 rule render:
@@ -19,7 +24,7 @@ rule render:
         sequence="|".join(map(re.escape, RENDERED)) or "(?!)",
     conda:
         "../../envs/threedfs.yaml"
-    threads: 2  # one film at a time: the next sequence of the same take finds it in the store
+    threads: THREADS
     resources:
         mem_mb=2500,
     params:

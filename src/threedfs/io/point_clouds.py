@@ -25,10 +25,20 @@ def read_semidense_points(
     max_deviation : float
         Points whose inverse depth has a larger relative standard deviation are left out.
     """
+    for name, depth in _read_depths(semidense, max_deviation):
+        yield backproject_map(keyframes[name].view, depth)[np.isfinite(depth)]
+
+
+def read_semidense_maps(semidense: Sequence[Path], max_deviation: float) -> dict[str, np.ndarray]:
+    """Return the depths (H, W) float64 of all semi-dense maps by keyframe, NaN where none is sure enough."""
+    return dict(_read_depths(semidense, max_deviation))
+
+
+def _read_depths(semidense, max_deviation):
     for path in semidense:
         measured = read_semidense(path)
         inverse = measured.inverse_depth.astype(np.float64)
         sure = (inverse > 0) & (np.sqrt(measured.variance) <= max_deviation * inverse)
         depth = np.full(inverse.shape, np.nan)
         depth[sure] = 1 / inverse[sure]
-        yield backproject_map(keyframes[path.name.removesuffix(".zarr.zip")].view, depth)[sure]
+        yield path.name.removesuffix(".zarr.zip"), depth

@@ -18,6 +18,8 @@ DEPTH_MAP = "threedfs/depth-map/1"
 CONSISTENCY = "threedfs/consistency/1"
 VOLUME = "threedfs/volume/1"
 ORIENTED_POINTS = "threedfs/oriented-points/1"
+SUPERPIXELS = "threedfs/superpixels/1"
+SEGMENTATION = "threedfs/segmentation/1"
 SUPPORT = "threedfs/support/1"
 SILHOUETTES = "threedfs/silhouettes/1"
 DEPTH_TRIAL = "threedfs/depth-trial/1"
@@ -33,10 +35,12 @@ _RULES = {
     STEREO: "stereo or stereo_check",
     DEPTH_MAP: "depth",
     CONSISTENCY: "consistency",
-    VOLUME: "fuse_scene, fuse_object, fuse_baseline, deform or object",
+    VOLUME: "fuse_scene, fuse_object, fuse_baseline, deform, object or cut_object",
     ORIENTED_POINTS: "densify",
+    SUPERPIXELS: "superpixels",
+    SEGMENTATION: "segment or volumetric_cut",
     SUPPORT: "locate",
-    SILHOUETTES: "object",
+    SILHOUETTES: "object, poisson, pixel_masks or cut_object",
     DEPTH_TRIAL: "depth_trial",
 }
 

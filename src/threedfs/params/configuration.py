@@ -11,7 +11,20 @@ from threedfs.errors import UserError
 from threedfs.params.rendered import RENDERED_KEYS
 from threedfs.params.schema import declared_stages, make_params, stage_schema
 
-METHODS = ("fused_sdf", "deformed_sdf", "tsdf", "soft_maximum", "hard_maximum", "poisson")
+METHODS = (
+    "fused_sdf",
+    "deformed_sdf",
+    "volumetric_gc",
+    "gc_2d",
+    "gc_2d3d_pixel",
+    "gc_2d3d_voxel",
+    "gc_select",
+    "sdf_2d3d_voxel",
+    "tsdf",
+    "soft_maximum",
+    "hard_maximum",
+    "poisson",
+)
 NAMES_OF_SEQUENCES = ("sequences", "cylinder_sequences")
 """Parameters that name sequences, and mean nothing for a single one."""
 SEQUENCE_NAME = r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$"

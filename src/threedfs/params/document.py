@@ -41,7 +41,8 @@ sequences: {}
 # Go on without the sequences whose source is absent; they are named at the start.
 skip_absent: false
 
-# How the object is made: fused_sdf, deformed_sdf, tsdf, soft_maximum, hard_maximum, poisson.
+# How the object is made: fused_sdf, deformed_sdf, volumetric_gc, gc_2d, gc_2d3d_pixel, gc_2d3d_voxel, gc_select,
+# sdf_2d3d_voxel, tsdf, soft_maximum, hard_maximum, poisson.
 methods: [fused_sdf]
 
 # Of every random choice.
@@ -123,9 +124,12 @@ _KEYS = {
     "sequences.<name>.settings": "its own values of parameters, by section, in place of those of the whole run: "
     "`{depth: {photometric_weight: 10}}`",
     "skip_absent": "go on without the sequences whose source is absent; they are named at the start",
-    "methods": "how the object is made, each with a mesh, masks and figures of its own: `fused_sdf` (the views "
-    "weighed by trust), `deformed_sdf` (its zero level moved onto surface points), `tsdf` (KinectFusion's weighted "
-    "average), `soft_maximum` (Eq. 15 as printed), `hard_maximum` (Eq. 13), `poisson` (the surface points alone)",
+    "methods": "how the object is made, each with masks and figures of its own, and a mesh but for two: `fused_sdf` "
+    "(the views weighed by trust), `deformed_sdf` (its zero level moved onto surface points), `volumetric_gc` (voxels "
+    "cut by colour alone), `gc_2d` (images cut by colour, only masks), `gc_2d3d_pixel` (images and voxels cut in one, "
+    "only masks), `gc_2d3d_voxel` (its voxels), `gc_select` (their largest piece), `sdf_2d3d_voxel` (the field inside "
+    "that piece), `tsdf` (KinectFusion's weighted average), `soft_maximum` (Eq. 15 as printed), `hard_maximum` (Eq. "
+    "13), `poisson` (the surface points alone)",
     "seed": "of every random choice",
     "store": "folder of finished work, and of the kernels compiled for it",
 }

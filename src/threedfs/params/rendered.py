@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from typing import Any
 
@@ -15,7 +16,18 @@ _BROUGHT = ("source", "cameras", "intrinsics", "calibration", "truth")
 _TRUTH = {"masks": "masks", "cameras": "cameras.json", "mesh": "mesh.ply", "depth": "depth"}
 
 
-def bring_render(name: str, entry: Mapping[str, Any]) -> Mapping[str, Any]:
+def find_films(sequences: Mapping[str, Mapping[str, Any]]) -> dict[str, str]:
+    """Return for each rendered sequence the one whose film it takes: the first of the same take and render settings."""
+    films: dict[str, str] = {}
+    first: dict[str, str] = {}
+    for name, entry in sequences.items():
+        if entry.get("rendered") is not None:
+            wanted = json.dumps([entry["rendered"], (entry.get("settings") or {}).get("render")], sort_keys=True)
+            films[name] = first.setdefault(wanted, name)
+    return films
+
+
+def bring_render(name: str, entry: Mapping[str, Any], film: str) -> Mapping[str, Any]:
     """Return a sequence's entry of the configuration, that of a rendered one with the results of the stage `render`.
 
     Parameters
@@ -23,6 +35,8 @@ def bring_render(name: str, entry: Mapping[str, Any]) -> Mapping[str, Any]:
     name : str
         Of the sequence.
     entry : mapping
+    film : str
+        Name of the sequence whose film it takes, its own or another's.
 
     Raises
     ------
@@ -49,7 +63,7 @@ def bring_render(name: str, entry: Mapping[str, Any]) -> Mapping[str, Any]:
         take_module(take)
     except UserError as fault:
         raise UserError(f"{where}.{fault}") from fault
-    folder = f"results/{name}/00_render"
+    folder = f"results/{film}/00_render"
     return {
         **entry,
         "source": f"{folder}/video.mp4",

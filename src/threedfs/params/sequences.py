@@ -10,7 +10,7 @@ from typing import Any, TextIO
 
 from threedfs.errors import UserError
 from threedfs.params.configuration import SEQUENCE_NAME, check_configuration, configuration_schema, explain_name
-from threedfs.params.rendered import bring_render
+from threedfs.params.rendered import bring_render, find_films
 
 SEQUENCE_FILES = ("source", "cameras", "calibration", "truth_masks", "truth_cameras", "truth_mesh", "truth_depth")
 """What a sequence's entry names: files and folders that must be there."""
@@ -82,7 +82,8 @@ def list_sequences(
         if not re.match(SEQUENCE_NAME, name):
             raise UserError(explain_name(name, f"the file {config['video']}; rename it, or list it under sequences"))
         given = {name: {"source": config["video"]}}
-    sequences = {name: _flatten(bring_render(name, entry)) for name, entry in given.items()}
+    films = find_films(given)
+    sequences = {name: _flatten(bring_render(name, entry, films.get(name, name))) for name, entry in given.items()}
     sequences = sequences or {"sample": _sample(home)}
     if config["skip_absent"]:
         sequences = _skip_absent(sequences, note)

@@ -60,7 +60,7 @@ def run(
     *,
     poses: Path,
     keyframes: Path,
-    mesh: Path,
+    mesh: Path | None,
     masks: Path,
     depth: list[Path],
     frames: Path,
@@ -91,7 +91,7 @@ def run(
                 f"truth.{what}: expected truth.cameras beside it, found none; they tell where {truth_path} lies."
             )
     store, solved = read_frames(frames), read_poses(poses)
-    selected, surface = read_keyframes(keyframes), read_mesh(mesh)
+    selected, surface = read_keyframes(keyframes), None if mesh is None else read_mesh(mesh)
     generator = np.random.default_rng(job.seed)
     figures = reconstruction_figures(len(solved.views), len(solved.unposed), solved.quality)
     truth = None
@@ -104,13 +104,15 @@ def run(
     if mesh_truth is not None:
         exact = read_mesh(mesh_truth)
         figures += _score_depth_by_mesh(exact, maps, truth, selected, solved, params)
+    if mesh_truth is not None and surface is not None:
         aligned = Mesh(truth.from_scene.apply(surface.vertices), surface.faces)
         error = measure_mesh(aligned, exact, params.mesh_thresholds, params.surface_samples, generator)
         figures += mesh_figures(error)
     if depth_truth is not None:
         figures += _score_depth_by_images(depth_truth, depth_scale, depth_camera, maps, truth, selected, solved, store)
-    figures.append(Figure("mesh_closed", float(is_closed(surface)), "1"))
-    if sequence in params.cylinder_sequences:
+    if surface is not None:
+        figures.append(Figure("mesh_closed", float(is_closed(surface)), "1"))
+    if surface is not None and sequence in params.cylinder_sequences:
         figures += cylinder_figures(measure_cylinder(surface, params.surface_samples, generator))
     write_metrics(
         metrics,
@@ -155,7 +157,7 @@ def _score_poses(truth: _Truth, solved: Poses) -> list[Figure]:
 def _score_masks(
     folder: Path,
     masks: Path,
-    surface: Mesh,
+    surface: Mesh | None,
     truth: _Truth | None,
     selected: Mapping[str, Keyframe],
     store: FrameStore,
@@ -172,6 +174,8 @@ def _score_masks(
     if left_out:
         job.progress.note(f"no score for frames with a true mask that are no keyframes: {', '.join(left_out)}")
     figures = [*mask_figures(overlap), Figure("masks_without_keyframe", len(left_out), "masks")]
+    if surface is None:
+        return figures
     aligned = None if truth is None else Mesh(truth.from_scene.apply(surface.vertices), surface.faces)
     overlap_unseen = {}
     for name in job.progress.track([name for name in found if name in unseen], "unseen view"):

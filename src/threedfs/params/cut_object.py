@@ -1,0 +1,46 @@
+"""Parameters of the cut_object stage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from threedfs.params.field import parameter
+
+
+@dataclass(frozen=True)
+class CutObjectParams:
+    """How labelled voxels cut the field of the method sdf_2d3d_voxel; the others take the labels as they are."""
+
+    dilation: int = parameter(
+        2,
+        "voxels by which the object's labels are enlarged before they cut its field",
+        equation="Sec. 3.5",
+        minimum=0,
+        maximum=50,
+    )
+    fit_masks: bool = parameter(
+        True, "carve the field where it sticks out of the masks, and fill it where it leaves gaps in them (paper: no)"
+    )
+    hull_ramp: float = parameter(
+        5.0,
+        "distance from the masks' visual hull at which its field is 1; acts with fit_masks",
+        unit="voxel",
+        exclusive_minimum=0.0,
+    )
+    hull_tolerance: float = parameter(
+        0.1,
+        "share of the views that may show a voxel of the visual hull outside their mask; acts with fit_masks",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    gap_views: int = parameter(
+        2, "views that show a voxel of the visual hull on a gap before it is filled; acts with fit_masks", minimum=1
+    )
+    smoothing_steps: int = parameter(3, "steps of the mesh's smoothing", equation="Sec. 3.5", minimum=0, maximum=100)
+    smoothing_contrast: float = parameter(
+        0.5,
+        "bend of the surface at a vertex from which it is kept as an edge",
+        unit="mean edge",
+        equation="Sec. 3.5",
+        exclusive_minimum=0.0,
+    )

@@ -1,0 +1,137 @@
+"""Colour of the object and of its background: Gaussian mixtures over all keyframes (Section 3.4, Eqs. 20, 21)."""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from sklearn.exceptions import ConvergenceWarning
+from sklearn.mixture import GaussianMixture
+
+from threedfs.errors import UserError
+
+_LEAST_VARIANCE = 1.0
+"""Of a component along any direction, Lab units squared: noise of a camera, so that a flat colour is no spike."""
+_UNEXPECTED = 0.05
+"""Share of the pixels on the support surface that do not look like it: highlights, things that stand on it."""
+_LIKENESS = 3.0
+"""Log ratio of the object's to the background's density from which a spot of the support surface looks like the object
+rather than like a shadow."""
+_FIRST_STEPS, _NEXT_STEPS = 30, 8
+"""Steps of expectation-maximisation from scratch, and from the mixture of the iteration before."""
+
+
+@dataclass(frozen=True)
+class TableMatch:
+    """How the support surface would look at pixels.
+
+    Attributes
+    ----------
+    known : (...) bool
+        Whether other views show it there.
+    color : (..., 3) float32
+        Lab.
+    density : (...) float32
+        Log density of the pixel's colour if it shows the support surface.
+    """
+
+    known: np.ndarray
+    color: np.ndarray
+    density: np.ndarray
+
+    def at(self, mask: np.ndarray) -> TableMatch:
+        """Return the pixels of a mask."""
+        return TableMatch(self.known[mask], self.color[mask], self.density[mask])
+
+
+@dataclass(frozen=True)
+class ColorModel:
+    """Mixtures of the object's and of the background's colours in Lab."""
+
+    of_object: GaussianMixture
+    of_background: GaussianMixture
+
+    def posterior(self, lab: np.ndarray, table: TableMatch | None = None) -> np.ndarray:
+        """Return the probability (N,) float64 that pixels of colours (N, 3) show the object, at even odds before.
+
+        Parameters
+        ----------
+        lab : (N, 3) float32
+        table : TableMatch, optional
+            Where it is known how the support surface looks at a pixel, the background is expected to look so, and its
+            mixture keeps the share `_UNEXPECTED`. What looks like the object there, as at its foot, is not believed.
+        """
+        of_object, background = self.of_object.score_samples(lab), self.of_background.score_samples(lab)
+        if table is not None and table.known.any():
+            known = table.known
+            lean = self.of_object.score_samples(table.color[known]) - self.of_background.score_samples(
+                table.color[known]
+            )
+            trust = (1 - _UNEXPECTED) / (1 + np.exp(np.clip(lean - _LIKENESS, -50, 50)))
+            expected = np.log(np.maximum(trust, 1e-300)) + table.density[known]
+            background[known] = np.logaddexp(np.log(1 - trust) + background[known], expected)
+        return 1 / (1 + np.exp(np.clip(background - of_object, -50, 50)))
+
+
+def lab_from_rgb(rgb: np.ndarray) -> np.ndarray:
+    """Return Lab colours (N, 3) float32 of RGB ones (N, 3) uint8."""
+    return lab_image(rgb[None])[0] if len(rgb) else np.zeros((0, 3), np.float32)
+
+
+def lab_image(image: np.ndarray) -> np.ndarray:
+    """Return the Lab colours (H, W, 3) float32 of an RGB image (H, W, 3) uint8."""
+    return cv2.cvtColor(image.astype(np.float32) / 255, cv2.COLOR_RGB2Lab)
+
+
+def truncate(probability: np.ndarray, cap: float) -> np.ndarray:
+    """Return the cost of a probability, -log, at most `cap` (Eq. 20)."""
+    return np.minimum(cap, -np.log(np.maximum(probability, 1e-300)))
+
+
+def fit_color_model(
+    object_lab: np.ndarray, background_lab: np.ndarray, components: int, before: ColorModel | None, seed: int
+) -> ColorModel:
+    """Fit a mixture to the colours (N, 3) of each region, going on from the model before, if there is one.
+
+    Raises
+    ------
+    UserError
+        If a region has fewer pixels than the mixture has components.
+    """
+    for name, lab in (("object", object_lab), ("background", background_lab)):
+        if len(lab) < components:
+            raise UserError(
+                f"Expected at least {components} pixels of the {name} to learn its colours from, got {len(lab)}; the "
+                "fused object is hardly in any keyframe, or fills all of them: check its mesh (method fused_sdf)."
+            )
+    return ColorModel(
+        _fit(object_lab, components, before and before.of_object, seed),
+        _fit(background_lab, components, before and before.of_background, seed + 1),
+    )
+
+
+def _fit(lab, components, before, seed):
+    start = (
+        {}
+        if before is None
+        else {
+            "weights_init": before.weights_ / before.weights_.sum(),
+            "means_init": before.means_,
+            "precisions_init": before.precisions_,
+        }
+    )
+    mixture = GaussianMixture(
+        components,
+        covariance_type="full",
+        reg_covar=_LEAST_VARIANCE,
+        max_iter=_FIRST_STEPS if before is None else _NEXT_STEPS,
+        tol=0,
+        random_state=seed,
+        init_params="k-means++",
+        **start,
+    )
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ConvergenceWarning)  # the steps are few on purpose: each round goes on
+        return mixture.fit(lab.astype(np.float64))

@@ -1,0 +1,218 @@
+"""From fused field, keyframes and depth to the evidence that the joint segmentation weighs (Sections 3.4.1, 3.4.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from scipy import ndimage
+
+from threedfs.errors import UserError
+from threedfs.fusion.fixation import find_fixation, viewing_distance
+from threedfs.geometry.projection import backproject_map
+from threedfs.object.component import choose_component, mark_points
+from threedfs.object.field import add_foot, height_above
+from threedfs.segment.color_model import lab_image
+from threedfs.segment.energy import BACKGROUND, OBJECT
+from threedfs.segment.evidence import ImageEvidence, VoxelEvidence
+from threedfs.segment.initialise import (
+    UNDECIDED,
+    bound_object,
+    decide_superpixels,
+    first_voxel_labels,
+    fix_voxels,
+    normalised_height,
+)
+from threedfs.segment.outline import draw_voxels
+from threedfs.segment.pairwise import link_voxels, superpixel_weights
+from threedfs.segment.superpixels import Superpixels
+from threedfs.segment.table import match_table, picture_table
+from threedfs.types import Plane, View, VoxelGrid
+
+_SURE_LEVEL = float(__import__("os").environ.get("SURE", "-.5"))
+"""Field of voxels that hide the support surface for certain."""
+_SURFACE_LEVEL = 0.25
+"""How far below zero the field may be at a voxel that a confirmed depth is linked with; above zero it may be empty."""
+_CONFIRMED = 0.5
+"""Confidence from which a depth is."""
+
+
+@dataclass(frozen=True)
+class Scene:
+    """What the stages before have found.
+
+    Attributes
+    ----------
+    grid : VoxelGrid
+    sdf, seen : (nx, ny, nz)
+        The field, and how many views see each voxel.
+    plane : Plane
+        The support surface.
+    low, high : (3,) float64
+        The object's box.
+    clearance : float
+        Least height of the object above the plane, scene units.
+    views : mapping of str to View
+        By the name of the keyframe, like images (H, W, 3) uint8 RGB, superpixels, depth (H, W), its confidence (H, W)
+        and semi-dense depth (H, W), NaN where there is none.
+    valid : (H, W) bool
+        Pixels that show the scene.
+    """
+
+    grid: VoxelGrid
+    sdf: np.ndarray
+    seen: np.ndarray
+    plane: Plane
+    low: np.ndarray
+    high: np.ndarray
+    clearance: float
+    views: Mapping[str, View]
+    images: Mapping[str, np.ndarray]
+    valid: np.ndarray
+    superpixels: Mapping[str, Superpixels]
+    depth: Mapping[str, np.ndarray]
+    confidence: Mapping[str, np.ndarray]
+    semidense: Mapping[str, np.ndarray]
+
+
+@dataclass(frozen=True)
+class GatherRule:
+    """How evidence is gathered; `SegmentParams` says more of each value."""
+
+    object_reach: float
+    outer_level: float
+    outer_height: float
+    outer_margin: int
+    fill_outer: bool
+    inner_level: float
+    decided_share: float
+    random_first: bool
+    empty_level: float
+    deepest: float
+    silhouette_ramp: float
+    table: bool
+    table_reach: float
+    pair_weight: float
+    by_mean: bool
+    pair_falloff: float
+    surface_links: bool
+    link_weight: float
+    link_by_share: bool
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Over-estimate, first guess and under-estimate of the object, and what hides the table, (nx, ny, nz) bool."""
+
+    outer: np.ndarray
+    guess: np.ndarray
+    inner: np.ndarray
+    hides: np.ndarray
+
+
+def gather_voxels(scene: Scene, rule: GatherRule) -> tuple[VoxelEvidence, Bounds]:
+    """Find the object in the fused field; return its first labels and what bounds it.
+
+    Raises
+    ------
+    UserError
+        If the field holds no solid with semi-dense points above the support plane.
+    """
+    views = list(scene.views.values())
+    fixation = find_fixation(views, (scene.low + scene.high) / 2)
+    height = height_above(scene.plane, scene.grid)
+    high = height > scene.clearance
+    holds = np.zeros(scene.grid.shape, bool)
+    for name, depth in scene.semidense.items():
+        mark_points(scene.grid, backproject_map(scene.views[name], depth)[np.isfinite(depth)], holds)
+    solid = (scene.sdf < 0) & (scene.seen > 0)
+    reach = rule.object_reach * viewing_distance(views, fixation)
+    chosen = choose_component(solid & high, scene.grid, holds & high, fixation, reach=reach)
+    if chosen is None:
+        raise UserError(
+            "segment: expected a solid above the support plane with semi-dense points on it, found none; the depth "
+            "maps disagree on the object (shiny, transparent or without texture?), or segment.clearance is above it."
+        )
+    guess = add_foot(chosen.voxels, height, scene.grid, scene.plane, scene.clearance) & (height > 0)
+    raised = scene.clearance + rule.outer_height * scene.grid.spacing
+    outer = bound_object(scene.sdf, guess, height > raised, rule.outer_level, rule.outer_margin)
+    inner = outer & guess & (scene.sdf < rule.inner_level)
+    hides = guess & (scene.sdf < _SURE_LEVEL) & high
+    normalised = normalised_height(height)
+    fixed = fix_voxels(scene.sdf, normalised, empty_level=rule.empty_level, deepest=rule.deepest)
+    first = first_voxel_labels(scene.sdf, guess, fixed)
+    return VoxelEvidence(scene.grid, scene.sdf, normalised, fixed, first), Bounds(outer, guess, inner, hides)
+
+
+def gather_images(
+    scene: Scene, volume: VoxelEvidence, bounds: Bounds, rule: GatherRule, rng: np.random.Generator
+) -> dict[str, ImageEvidence]:
+    """Return the evidence of each keyframe, by its name.
+
+    Parameters
+    ----------
+    scene : Scene
+    volume, bounds
+        As `gather_voxels` returns them.
+    rule : GatherRule
+    rng : numpy.random.Generator
+        Draws first labels, where they are random.
+    """
+    outer, guess, inner, hides = (
+        draw_voxels(voxels, scene.grid, scene.views)
+        for voxels in (bounds.outer, bounds.guess, bounds.inner, bounds.hides)
+    )
+    if rule.fill_outer:
+        outer = {name: ndimage.binary_fill_holes(mask) for name, mask in outer.items()}
+    reach = rule.table_reach * (scene.high - scene.low).max()
+    table = None
+    if rule.table:
+        covered = {name: cv2.dilate(mask.astype(np.uint8), np.ones((5, 5))) > 0 for name, mask in hides.items()}
+        low, high = scene.low - reach, scene.high + reach
+        table = picture_table(scene.images, scene.views, covered, scene.valid, scene.plane, low, high)
+    evidence = {}
+    for name, view in scene.views.items():
+        superpixels = scene.superpixels[name]
+        decided = decide_superpixels(superpixels, outer[name], inner[name], rule.decided_share)
+        guessed = superpixels.share(guess[name]) > 0.5
+        if rule.random_first:
+            guessed = rng.random(superpixels.count) < 0.5
+        first = np.where(decided == UNDECIDED, np.where(guessed, OBJECT, BACKGROUND), decided).astype(np.uint8)
+        points = backproject_map(view, scene.depth[name])
+        outside = np.isfinite(scene.depth[name]) & ~((points >= scene.low) & (points <= scene.high)).all(axis=-1)
+        pairs, weight = _link(scene, volume, name, decided == UNDECIDED, points, rule)
+        middle = view.cam_from_world[2] @ np.append((scene.low + scene.high) / 2, 1)
+        evidence[name] = ImageEvidence(
+            view,
+            scene.images[name],
+            superpixels,
+            decided,
+            first,
+            superpixels.share(outside),
+            rule.pair_weight * superpixel_weights(superpixels, rule.pair_falloff, rule.by_mean),
+            pairs,
+            weight,
+            rule.silhouette_ramp * scene.grid.spacing * view.camera.fx / middle,
+            match_table(lab_image(scene.images[name]), *table.predict(view)) if table else None,
+        )
+    return evidence
+
+
+def _link(scene, volume, name, is_open, points, rule):
+    """Return the links (M, 2) of a keyframe's open superpixels with open voxels, and their weights (M,)."""
+    shown = scene.superpixels[name].index >= 0
+    if rule.surface_links:
+        shown &= (scene.confidence[name] > _CONFIRMED) & np.isfinite(scene.depth[name])
+    else:
+        points = backproject_map(scene.views[name], scene.semidense[name])
+        shown &= np.isfinite(scene.semidense[name])
+    rows, columns = np.nonzero(shown)
+    pairs, share = link_voxels(scene.superpixels[name], points[rows, columns], rows, columns, scene.grid)
+    kept = is_open[pairs[:, 0]] & (volume.fixed.reshape(-1)[pairs[:, 1]] == UNDECIDED)
+    if rule.surface_links:
+        near = scene.sdf.reshape(-1)[pairs[:, 1]]
+        kept &= (near <= 0) & (near > -_SURFACE_LEVEL)
+    weight = rule.link_weight * (share[kept] if rule.link_by_share else np.ones(kept.sum()))
+    return pairs[kept], weight.astype(np.float32)

@@ -1,0 +1,243 @@
+"""One labelling of the superpixels of all keyframes and of all voxels (Section 3.4)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from threedfs.errors import UserError
+from threedfs.segment.alpha_expansion import expand
+from threedfs.segment.color_model import ColorModel, fit_color_model, lab_from_rgb, truncate
+from threedfs.segment.energy import BACKGROUND, EMPTY, OBJECT, LabelGraph, energy
+from threedfs.segment.evidence import ImageEvidence, VoxelEvidence
+from threedfs.segment.outline import draw_voxels
+from threedfs.segment.pairwise import voxel_pairs
+from threedfs.segment.unaries import carve_unary, mean_by, scene_unary, sdf_unary, silhouette_unary, soften_silhouette
+
+_RISE = 1e-4
+"""Relative rise of the energy in a move that single precision of the costs explains."""
+
+
+@dataclass(frozen=True)
+class CutRule:
+    """Weights and steps of the joint segmentation; `SegmentParams` says more of each value."""
+
+    components: int
+    color_superpixels: int
+    color_pixels: int
+    color_cap: float
+    color_weight: float
+    roi_weight: float
+    silhouette_weight: float
+    sdf_weight: float
+    scene_weight: float
+    carve_weight: float
+    carve_tolerance: float
+    voxel_pair_weight: float
+    iterations: int
+    stop_swaps: int
+    stop_share: float
+
+
+@dataclass(frozen=True)
+class Cut:
+    """A labelling.
+
+    Attributes
+    ----------
+    superpixels : dict of str to (count,) uint8
+        Labels by keyframe.
+    voxels : (nx, ny, nz) uint8 or None
+        None where only images were segmented.
+    energies : (M,) float64
+        After each move, in order; costs change between iterations.
+    swaps : (M,) int64
+        Labels that each move changed.
+    colors : ColorModel
+        Of the last iteration.
+    """
+
+    superpixels: dict[str, np.ndarray]
+    voxels: np.ndarray | None
+    energies: np.ndarray
+    swaps: np.ndarray
+    colors: ColorModel
+
+
+def segment_jointly(
+    images: Mapping[str, ImageEvidence],
+    volume: VoxelEvidence | None,
+    rule: CutRule,
+    rng: np.random.Generator,
+    note: Callable[[str], None] = lambda message: None,
+) -> Cut:
+    """Label superpixels and voxels by alpha-expansion, with colours and silhouettes renewed in each iteration.
+
+    Parameters
+    ----------
+    images : mapping of str to ImageEvidence
+    volume : VoxelEvidence or None
+        None segments the images alone, tied to each other by their colours only (2D GC of Section 4.3).
+    rule : CutRule
+    rng : numpy.random.Generator
+        Draws what the colour models are learnt from.
+    note : callable
+        Takes a message to report progress.
+
+    Raises
+    ------
+    UserError
+        If the trimap leaves nothing to segment, or the object loses all its voxels.
+    ArithmeticError
+        If a move raises the energy.
+    """
+    nodes = _Nodes(images, volume)
+    labels, model, seed = nodes.first_labels(), None, int(rng.integers(2**31))
+    silhouettes, carved = _Average(), _Average()
+    energies, swaps = [], []
+    views = {name: evidence.view for name, evidence in images.items()}
+    for iteration in range(rule.iterations):
+        of_images = nodes.split(labels)
+        model = _learn_colors(images, of_images, rule, model, rng, seed)
+        if volume is not None:
+            voxels = nodes.voxels(labels)
+            if not (voxels == OBJECT).any():
+                raise UserError(
+                    "segment: expected voxels of the object, found none left; its colours are those of the background, "
+                    "or its masks shrank away: lower segment.carve_weight, or use the method fused_sdf."
+                )
+            drawn = draw_voxels(voxels == OBJECT, volume.grid, views)
+            soft = {name: soften_silhouette(mask, images[name].silhouette_reach) for name, mask in drawn.items()}
+            silhouettes.add(np.concatenate([images[name].superpixels.mean(share) for name, share in soft.items()]))
+            masks = {name: images[name].superpixels.paint(of_images[name] == OBJECT) for name in images}
+            carved.add(carve_unary(nodes.open_centres, views, masks, rule.carve_tolerance))
+        graph = nodes.connect(model, silhouettes.mean, carved.mean, rule)
+        swapped = 0
+        now = energy(graph, labels)
+        for target in (BACKGROUND, OBJECT, EMPTY) if volume is not None else (BACKGROUND, OBJECT):
+            moved = expand(graph, labels, target)
+            after = energy(graph, moved)
+            if after > now + _RISE * abs(now):
+                raise ArithmeticError(f"segment: a move raised the energy from {now} to {after}.")
+            swaps.append(int((moved != labels).sum()))
+            energies.append(after)
+            labels, now, swapped = moved, after, swapped + swaps[-1]
+        note(f"iteration {iteration + 1}: energy {now:.0f}, {swapped} labels changed of {int(graph.is_open.sum())}")
+        if swapped < max(rule.stop_swaps, rule.stop_share * graph.is_open.sum()):
+            break
+    return Cut(
+        nodes.split(labels),
+        None if volume is None else nodes.voxels(labels),
+        np.array(energies),
+        np.array(swaps, np.int64),
+        model,
+    )
+
+
+class _Average:
+    """The mean of all arrays added so far."""
+
+    def __init__(self) -> None:
+        self._sum, self._count = None, 0
+
+    def add(self, values: np.ndarray) -> None:
+        self._sum = values.astype(np.float64) if self._sum is None else self._sum + values
+        self._count += 1
+
+    @property
+    def mean(self) -> np.ndarray | None:
+        return None if self._sum is None else self._sum / self._count
+
+
+class _Nodes:
+    """Numbering of all nodes: the superpixels of each image in turn, then the voxels in the order of the grid."""
+
+    def __init__(self, images: Mapping[str, ImageEvidence], volume: VoxelEvidence | None) -> None:
+        self._images, self._volume = images, volume
+        counts = [evidence.superpixels.count for evidence in images.values()]
+        self._starts = np.concatenate([[0], np.cumsum(counts)])
+        self._superpixels = int(self._starts[-1])
+        is_open = [evidence.is_open for evidence in images.values()]
+        if not any(part.any() for part in is_open):
+            raise UserError(
+                "segment: expected superpixels between the outer and the inner estimate of the object, found none; "
+                "raise segment.outer_level or segment.outer_margin, or lower segment.inner_level."
+            )
+        self._pairs = [e.superpixels.pairs + s for e, s in zip(images.values(), self._starts, strict=False)]
+        self._weights = [e.pair_weight for e in images.values()]
+        self._never_empty = np.empty(0, np.int64)
+        self.open_centres = np.empty((0, 3))
+        if volume is not None:
+            is_open.append(volume.is_open.reshape(-1))
+            self._open_voxels = np.flatnonzero(is_open[-1])
+            place = np.stack(np.unravel_index(self._open_voxels, volume.grid.shape), axis=1)
+            self.open_centres = volume.grid.origin + volume.grid.spacing * place
+            self._pairs.append(voxel_pairs(volume.is_open) + self._superpixels)
+            starts = [(start, self._superpixels) for start in self._starts[:-1]]
+            links = [e.link_pairs + np.array(start) for e, start in zip(images.values(), starts, strict=True)]
+            self._pairs.append(np.concatenate(links).astype(np.int32))
+            self._links = np.concatenate([e.link_weight for e in images.values()])
+            self._never_empty = np.unique(self._pairs[-1][:, 1])
+        self._is_open = np.concatenate(is_open)
+
+    def first_labels(self) -> np.ndarray:
+        labels = [evidence.first for evidence in self._images.values()]
+        return np.concatenate(labels if self._volume is None else [*labels, self._volume.first.reshape(-1)])
+
+    def split(self, labels: np.ndarray) -> dict[str, np.ndarray]:
+        """Return the superpixels' labels by keyframe."""
+        parts = np.split(labels[: self._superpixels], self._starts[1:-1])
+        return dict(zip(self._images, parts, strict=True))
+
+    def voxels(self, labels: np.ndarray) -> np.ndarray:
+        return labels[self._superpixels :].reshape(self._volume.grid.shape)
+
+    def connect(
+        self, model: ColorModel, silhouettes: np.ndarray | None, carved: np.ndarray | None, rule: CutRule
+    ) -> LabelGraph:
+        """Return the graph of Eq. 19 under the present colours, silhouettes and carving."""
+        unary = np.zeros((len(self._is_open), 3), np.float32)
+        images = unary[: self._superpixels]
+        images[:, EMPTY] = np.inf
+        for start, evidence in zip(self._starts, self._images.values(), strict=False):
+            owner, lab, table = evidence.band
+            count = evidence.superpixels.count
+            chance = model.posterior(lab, table)
+            own = slice(start, start + count)
+            cost = [mean_by(truncate(p, rule.color_cap), owner, count) for p in (1 - chance, chance)]
+            images[own, :2] = rule.color_weight * np.stack(cost, axis=1)
+            images[own, OBJECT] += rule.roi_weight * evidence.outside
+        if silhouettes is not None:
+            images[:, :2] += rule.silhouette_weight * silhouette_unary(silhouettes)
+        pairs, weights = list(self._pairs), list(self._weights)
+        if self._volume is not None:
+            sdf, normalised = (
+                array.reshape(-1)[self._open_voxels] for array in (self._volume.sdf, self._volume.normalised)
+            )
+            cost = rule.sdf_weight * sdf_unary(sdf) + rule.scene_weight * scene_unary(normalised)
+            cost[:, OBJECT] += rule.carve_weight * carved
+            unary[self._superpixels + self._open_voxels] = cost
+            unary[self._never_empty, EMPTY] = np.inf
+            weights.append(np.full(len(pairs[-2]), rule.voxel_pair_weight, np.float32))
+            weights.append(self._links)
+        return LabelGraph(unary, np.concatenate(pairs), np.concatenate(weights).astype(np.float32), self._is_open)
+
+
+def _learn_colors(images, labels, rule, before, rng, seed):
+    """Learn both colour models from superpixels drawn among those that have each label at present."""
+    lab = []
+    for label in (OBJECT, BACKGROUND):
+        owners = np.concatenate([np.full(len(own), rank) for rank, own in enumerate(labels.values())])
+        numbers = np.concatenate([np.arange(len(own)) for own in labels.values()])
+        among = np.flatnonzero(np.concatenate(list(labels.values())) == label)
+        drawn = rng.permutation(among)[: rule.color_superpixels]
+        colors = []
+        for rank, evidence in enumerate(images.values()):
+            chosen = np.zeros(evidence.superpixels.count, bool)
+            chosen[numbers[drawn[owners[drawn] == rank]]] = True
+            colors.append(evidence.image[evidence.superpixels.paint(chosen)])
+        rgb = np.concatenate(colors)
+        lab.append(lab_from_rgb(rgb[rng.permutation(len(rgb))[: rule.color_pixels]]))
+    return fit_color_model(lab[0], lab[1], rule.components, before, seed)

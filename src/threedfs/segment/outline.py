@@ -1,0 +1,47 @@
+"""Silhouettes of sets of voxels."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from scipy import ndimage
+from skimage.measure import marching_cubes
+
+from threedfs.object.silhouettes import draw_silhouette
+from threedfs.types import Mesh, View, VoxelGrid
+
+
+def surround_voxels(voxels: np.ndarray, grid: VoxelGrid) -> Mesh:
+    """Return the closed surface, of any number of shells, half way between the voxels of a set and those outside.
+
+    Parameters
+    ----------
+    voxels : (nx, ny, nz) bool
+        One at least.
+    grid : VoxelGrid
+    """
+    (box,) = ndimage.find_objects(voxels.astype(np.uint8))
+    padded = np.pad(voxels[box], 1).astype(np.float32)
+    vertices, faces, _, _ = marching_cubes(padded, 0.5, gradient_direction="ascent", method="lorensen")
+    start = np.array([part.start for part in box]) - 1
+    return Mesh(grid.origin + grid.spacing * (vertices.astype(np.float64) + start), faces.astype(np.int64))
+
+
+def draw_voxels(voxels: np.ndarray, grid: VoxelGrid, views: Mapping[str, View]) -> dict[str, np.ndarray]:
+    """Return the silhouette (H, W) bool of a set of voxels in each view; nothing where the set is empty."""
+    if not voxels.any():
+        return {name: np.zeros(view.camera.shape, bool) for name, view in views.items()}
+    surface = surround_voxels(voxels, grid)
+    return {name: draw_silhouette(surface, view) for name, view in views.items()}
+
+
+def largest_piece(voxels: np.ndarray) -> np.ndarray:
+    """Return the largest 6-connected piece of a set of voxels (nx, ny, nz) bool."""
+    labels, _ = ndimage.label(voxels)
+    return labels == np.bincount(labels[voxels]).argmax()
+
+
+def grow_voxels(voxels: np.ndarray, steps: int) -> np.ndarray:
+    """Return a set of voxels (nx, ny, nz) bool with all that are no farther than `steps` voxels from it."""
+    return voxels if steps == 0 else ndimage.distance_transform_edt(~voxels) <= steps

@@ -1,0 +1,142 @@
+"""How the support surface looks where no object covers it, from all keyframes together."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+
+from threedfs.segment.color_model import TableMatch, lab_image
+from threedfs.types import Plane, View
+
+_LEAST_VIEWS = 3
+"""Views that must show a spot uncovered: of two that differ, neither is known to be right."""
+_NOISE = 3.0
+"""Standard deviation of a channel of Lab between views of the same spot, at least: noise of a camera, resampling."""
+_SPREAD = 0.9
+"""Standard deviation of a channel per median distance in Lab; of a normal distribution it would be 0.65."""
+_WIDEST = 10.0
+"""Median distance in Lab above which the views do not show one surface at a spot."""
+_LONGEST = 900
+"""Pixels along the longer side of the flat picture, so that memory does not grow with the images."""
+
+
+@dataclass(frozen=True)
+class TablePicture:
+    """The support surface as a flat picture.
+
+    Attributes
+    ----------
+    color : (H, W, 3) float32
+        Lab, median over the views that show the spot.
+    spread : (H, W) float32
+        Median distance of their colours from it, Lab.
+    known : (H, W) bool
+    world_from_picture : (4, 3) float64
+        Homogeneous world points of homogeneous pixels (u, v, 1).
+    """
+
+    color: np.ndarray
+    spread: np.ndarray
+    known: np.ndarray
+    world_from_picture: np.ndarray
+
+    def predict(self, view: View) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Return colour (H, W, 3), spread (H, W) and whether they are known (H, W) at the pixels of a view."""
+        image_from_picture = view.px_from_world @ self.world_from_picture
+        size = (view.camera.width, view.camera.height)
+        color, spread, known = (
+            cv2.warpPerspective(array, image_from_picture, size, flags=cv2.INTER_LINEAR)
+            for array in (self.color, self.spread, self.known.astype(np.float32))
+        )
+        return color, spread, known > 0.99
+
+
+def match_table(lab: np.ndarray, color: np.ndarray, spread: np.ndarray, known: np.ndarray) -> TableMatch:
+    """Compare an image with the support surface as it would look in it.
+
+    The best match within a pixel around counts, as cameras are not exact to a pixel.
+
+    Parameters
+    ----------
+    lab : (H, W, 3) float32
+    color, spread, known
+        As `TablePicture.predict` gives them.
+    """
+    deviation = np.sqrt(_NOISE**2 + (_SPREAD * spread) ** 2)
+    best = np.full(known.shape, np.inf, np.float32)
+    for down in (-1, 0, 1):
+        for across in (-1, 0, 1):
+            moved = np.roll(color, (down, across), axis=(0, 1))
+            apart = np.where(np.roll(known, (down, across), axis=(0, 1)), ((lab - moved) ** 2).sum(-1), np.inf)
+            best = np.minimum(best, apart)
+    density = -0.5 * best / deviation**2 - 3 * np.log(deviation) - 1.5 * np.log(2 * np.pi)
+    return TableMatch(known, color, density.astype(np.float32))
+
+
+def picture_table(
+    images: Mapping[str, np.ndarray],
+    views: Mapping[str, View],
+    covered: Mapping[str, np.ndarray],
+    valid: np.ndarray,
+    plane: Plane,
+    low: np.ndarray,
+    high: np.ndarray,
+) -> TablePicture:
+    """Take a picture of the support plane, seen from above, out of all views.
+
+    Not in the paper. What lies flat on the table, shadows among it, looks the same in all views; the object does not.
+
+    Parameters
+    ----------
+    images : mapping of str to (H, W, 3) uint8
+        RGB.
+    views : mapping of str to View
+    covered : mapping of str to (H, W) bool
+        Pixels that may show the object.
+    valid : (H, W) bool
+    plane : Plane
+    low, high : (3,) float64
+        Box around what the picture is needed for, world.
+    """
+    world_from_picture, size = _lay_out(plane, low, high, views)
+    colors, shown = [], []
+    for name, view in views.items():
+        picture_from_image = np.linalg.inv(view.px_from_world @ world_from_picture)
+        clear = (valid & ~covered[name]).astype(np.float32)
+        colors.append(cv2.warpPerspective(lab_image(images[name]), picture_from_image, size, flags=cv2.INTER_LINEAR))
+        shown.append(cv2.warpPerspective(clear, picture_from_image, size, flags=cv2.INTER_LINEAR) > 0.99)
+        shown[-1] &= _in_front(view, world_from_picture, size)
+    stack = np.where(np.stack(shown)[..., None], np.stack(colors), np.nan)
+    known = np.sum(shown, axis=0) >= _LEAST_VIEWS
+    color, spread = np.zeros((*known.shape, 3), np.float32), np.zeros(known.shape, np.float32)
+    color[known] = np.nanmedian(stack[:, known], axis=0)
+    spread[known] = np.nanmedian(np.linalg.norm(stack[:, known] - color[known], axis=-1), axis=0)
+    known &= spread < _WIDEST
+    return TablePicture(color, spread, known, world_from_picture)
+
+
+def _lay_out(plane, low, high, views):
+    """Return (4, 3) world from picture, and the picture's (width, height), for the part of the plane in a box."""
+    across = np.cross(plane.normal, np.eye(3)[np.argmin(np.abs(plane.normal))])
+    across /= np.linalg.norm(across)
+    along = np.cross(plane.normal, across)
+    corners = np.stack(np.meshgrid(*zip(low, high, strict=True), indexing="ij"), axis=-1).reshape(-1, 3)
+    corners = corners - plane.distance(corners)[:, None] * plane.normal
+    spans = [(float((corners @ axis).min()), float((corners @ axis).max())) for axis in (across, along)]
+    middle = corners.mean(axis=0)
+    nearest = min(float(np.linalg.norm(view.centre - middle)) for view in views.values())
+    pixel = nearest / max(view.camera.fx for view in views.values())
+    pixel = max(pixel, max(stop - start for start, stop in spans) / _LONGEST)
+    size = tuple(int(np.ceil((stop - start) / pixel)) + 1 for start, stop in spans)
+    origin = spans[0][0] * across + spans[1][0] * along - plane.offset * plane.normal
+    return np.vstack([np.stack([pixel * across, pixel * along, origin], axis=1), [0, 0, 1]]), size
+
+
+def _in_front(view, world_from_picture, size):
+    """Say which pixels of the picture lie in front of a camera, (height, width) bool."""
+    depth = view.cam_from_world[2] @ world_from_picture
+    u, v = np.arange(size[0]), np.arange(size[1])
+    return depth[0] * u + depth[1] * v[:, None] + depth[2] > 0

@@ -1,0 +1,60 @@
+"""Label voxels by colours and photo-consistency alone: the baseline volumetric_gc."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from threedfs.fusion.fixation import find_fixation
+from threedfs.geometry.grid import cover_box, voxel_index
+from threedfs.io.frames import read_frames
+from threedfs.io.keyframes import read_keyframes
+from threedfs.io.point_clouds import read_semidense_points
+from threedfs.io.segmentation import Segmentation, write_segmentation
+from threedfs.io.volumes import read_support
+from threedfs.job import Job
+from threedfs.object.field import height_above
+from threedfs.params.volumetric_cut import VolumetricCutParams
+from threedfs.segment.volumetric import VolumetricRule, cut_volume
+
+
+def run(
+    *,
+    support: Path,
+    keyframes: Path,
+    undistorted: Path,
+    semidense: list[Path],
+    labels: Path,
+    params: VolumetricCutParams,
+    job: Job,
+) -> None:
+    """Read images, the object's box and semi-dense points; write voxel labels."""
+    place, entries, store = read_support(support), read_keyframes(keyframes), read_frames(undistorted)
+    views = {name: entry.view for name, entry in entries.items()}
+    grid = cover_box(place.low, place.high, params.longest_side)
+    votes = np.zeros(grid.shape, np.float32)
+    for cloud in read_semidense_points(entries, semidense, params.point_deviation):
+        index, _ = voxel_index(grid, cloud)
+        np.add.at(votes, tuple(index.T), 1)
+    voxels = cut_volume(
+        {name: store.image(name) for name in views},
+        views,
+        grid,
+        height_above(place.plane, grid),
+        votes,
+        find_fixation(list(views.values()), (place.low + place.high) / 2),
+        VolumetricRule(
+            components=params.components,
+            color_pixels=params.color_pixels,
+            least_posterior=params.least_posterior,
+            fixation_radius=params.fixation_radius,
+            pair_weight=params.pair_weight,
+            vote_scale=params.vote_scale,
+            iterations=params.iterations,
+            stop_share=params.stop_share,
+        ),
+        np.random.default_rng(job.seed),
+        job.progress.note,
+    )
+    write_segmentation(labels, Segmentation({}, grid, voxels, np.zeros(0), np.zeros(0, np.int64)), job.header)
