@@ -64,8 +64,8 @@ def main(results: Path, picture: Path) -> None:
     """Draw one picture."""
     frames = read_frames(results / "02_poses/undistorted.zarr.zip")
     keyframes = read_keyframes(results / "03_keyframes/keyframes.json")
-    silhouettes = read_silhouettes(results / "11_object/fused_sdf/silhouettes.zarr.zip")
-    mesh = read_mesh(results / "11_object/fused_sdf/mesh.ply")
+    silhouettes = read_silhouettes(results / "11_object/gc_2d3d_pixel/silhouettes.zarr.zip")
+    mesh = read_mesh(results / "11_object/sdf_2d3d_voxel/mesh.ply")
     names = list(keyframes)
     columns = []
     for name in names[:: max(1, len(names) // COLUMNS)][:COLUMNS]:

@@ -12,7 +12,20 @@ import pytest
 
 from threedfs.geometry.rigid import look_at
 from threedfs.geometry.similarity import Similarity
-from threedfs.io import calibration, consistency, depth_maps, frames, keyframes, metrics, points, poses, volumes
+from threedfs.io import (
+    calibration,
+    consistency,
+    depth_maps,
+    frames,
+    keyframes,
+    metrics,
+    points,
+    poses,
+    segmentation,
+    superpixels,
+    volumes,
+)
+from threedfs.segment.superpixels import Superpixels
 from threedfs.types import Camera, Keyframe, Plane, SparsePoints, View, VoxelGrid
 
 HEADER = {"parameters": {"size": 3, "names": ["a", "b"]}, "provenance": "0123"}
@@ -129,6 +142,29 @@ ARTIFACTS = [
         {"000002": RANDOM.random((6, 8)) > 0.5, "000001": RANDOM.random((6, 8)) > 0.5},
         volumes.write_silhouettes,
         volumes.read_silhouettes,
+    ),
+    Artifact(
+        "superpixels.zarr.zip",
+        Superpixels(
+            np.arange(48, dtype=np.int32).reshape(6, 8) // 24,
+            np.array([[0, 1]], np.int32),
+            np.array([16], np.int32),
+            np.array([2.5], np.float32),
+        ),
+        superpixels.write_superpixels,
+        superpixels.read_superpixels,
+    ),
+    Artifact(
+        "joint.zarr.zip",
+        segmentation.Segmentation(
+            {"000001": RANDOM.random((6, 8)) > 0.5, "000002": RANDOM.random((6, 8)) > 0.5},
+            VoxelGrid(np.array([0.5, -1.0, 2.0]), 0.25, (3, 4, 5)),
+            RANDOM.integers(0, 3, (3, 4, 5), np.uint8),
+            np.array([-1.5, -2.0]),
+            np.array([40, 3], np.int64),
+        ),
+        segmentation.write_segmentation,
+        segmentation.read_segmentation,
     ),
 ]
 

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import dataclasses
+import importlib
 import json
 import os
+import re
 import zipfile
 from collections.abc import Mapping
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -18,6 +21,9 @@ from threedfs.io.consistency import ConsistencyStore, read_consistency
 from threedfs.io.documents import read_document, write_document
 from threedfs.io.frames import Frame, FrameStore, read_frames, write_frames
 from threedfs.io.keyframes import read_keyframe
+from threedfs.params.schema import STAGES
+
+OTHER = schema.Schema("threedfs/other/1", "other")
 
 
 def plain(value):
@@ -87,24 +93,28 @@ def test_damaged_file_is_refused(artifact, header, tmp_path):
 def test_other_schema_is_refused(artifact, header, tmp_path):
     path = tmp_path / artifact.name
     if path.suffix == ".json":
-        write_document(path, "threedfs/other/1", {}, header)
+        write_document(path, OTHER, {}, header)
     else:
-        with writing_arrays(path, "threedfs/other/1", header) as writer:
+        with writing_arrays(path, OTHER, header) as writer:
             writer.put("x", np.zeros(3))
     with pytest.raises(UserError, match=r"expected schema .*, got threedfs/other/1"):
         artifact.read(path)
 
 
-def test_every_schema_has_a_rule_that_writes_it():
-    schemas = [value for name, value in vars(schema).items() if name.isupper() and isinstance(value, str)]
-    assert schemas
-    assert all(schema.rule_of(name) != "unknown" for name in schemas)
+def test_every_schema_names_rules_that_there_are():
+    modules = (
+        importlib.import_module(f"threedfs.io.{path.stem}") for path in Path(schema.__file__).parent.glob("*.py")
+    )
+    found = {value for module in modules for value in vars(module).values() if isinstance(value, schema.Schema)}
+    assert len({kind.name for kind in found}) == len(found) > 15
+    named = {name for kind in found for name in re.split(r",| or ", kind.rules)}
+    assert {name.strip() for name in named} <= {*STAGES, "pixel_masks"}
 
 
 def test_failed_writing_leaves_nothing(header, tmp_path):
     with (
         pytest.raises(ZeroDivisionError),
-        writing_arrays(tmp_path / "a.zarr.zip", "threedfs/other/1", header) as writer,
+        writing_arrays(tmp_path / "a.zarr.zip", OTHER, header) as writer,
     ):
         writer.put("x", np.zeros(3))
         raise ZeroDivisionError
@@ -113,10 +123,10 @@ def test_failed_writing_leaves_nothing(header, tmp_path):
 
 def test_failed_writing_keeps_the_file_that_was_there(header, tmp_path):
     path = tmp_path / "a.json"
-    write_document(path, "threedfs/other/1", {"x": 1}, header)
+    write_document(path, OTHER, {"x": 1}, header)
     with pytest.raises(ValueError, match="JSON"):
-        write_document(path, "threedfs/other/1", {"x": float("nan")}, header)
-    assert read_document(path, "threedfs/other/1")["x"] == 1
+        write_document(path, OTHER, {"x": float("nan")}, header)
+    assert read_document(path, OTHER)["x"] == 1
 
 
 def test_zip_has_no_entry_twice_and_no_date(artifact, header, tmp_path):
@@ -132,12 +142,12 @@ def test_zip_has_no_entry_twice_and_no_date(artifact, header, tmp_path):
 
 def test_chunk_equal_to_the_fill_value_is_written(header, tmp_path):
     path = tmp_path / "a.zarr.zip"
-    with writing_arrays(path, "threedfs/other/1", header) as writer:
+    with writing_arrays(path, OTHER, header) as writer:
         writer.put("zeros", np.zeros((4, 4), np.uint8))
         writer.put("missing", np.full((4, 4), np.nan, np.float32))
     with zipfile.ZipFile(path) as file:
         assert {name.partition("/")[0] for name in file.namelist() if "/c/" in name} == {"zeros", "missing"}
-    assert np.isnan(open_arrays(path, "threedfs/other/1")["missing"][...]).all()
+    assert np.isnan(open_arrays(path, OTHER)["missing"][...]).all()
 
 
 def test_frames_are_streamed(header, tmp_path):

@@ -171,11 +171,12 @@ def test_colours_are_told_apart_and_the_table_speaks_where_they_are_not():
     again = fit_color_model(red, grey, 3, model, 0)
     assert again.posterior(red).mean() > 0.99
     same = fit_color_model(grey, colours(rng, (50, 0, 0)), 3, None, 0)
-    table = TableMatch(np.ones(2000, bool), grey, np.full(2000, -3 * np.log(3.0) - 2.76, np.float32))
+    yes = np.ones(2000, bool)
+    table = TableMatch(np.ones(2000, bool), grey, np.full(2000, -3 * np.log(3.0) - 2.76, np.float32), yes)
     assert same.posterior(grey, table).mean() < same.posterior(grey).mean()
-    other = TableMatch(np.ones(2000, bool), grey, np.full(2000, -60.0, np.float32))
+    other = TableMatch(np.ones(2000, bool), grey, np.full(2000, -60.0, np.float32), yes)
     assert same.posterior(grey, other).mean() > 0.9
-    unknown = TableMatch(np.zeros(2000, bool), grey, np.full(2000, -60.0, np.float32))
+    unknown = TableMatch(np.zeros(2000, bool), grey, np.full(2000, -60.0, np.float32), yes)
     assert np.array_equal(same.posterior(grey, unknown), same.posterior(grey))
 
 

@@ -91,6 +91,12 @@ def field_to_segment(wildcards):
     return f"results/{wildcards.sequence}/{FIELDS[method]}"
 
 
+def memory_to_segment(wildcards, input):
+    """Estimate the memory of a cut, MB: the graph, and for each keyframe its maps and its share of the table's picture."""
+    pixels = 0.75 * settings_of("frames")(wildcards)["longest_side"] ** 2
+    return int(1500 + len(input.depth) * (80e-6 * pixels + 30))
+
+
 def field_to_cut(wildcards):
     """Return the field whose zero level labels cut out, or nothing for methods of labels alone."""
     return field_to_segment(wildcards) if wildcards.method == "sdf_2d3d_voxel" else []

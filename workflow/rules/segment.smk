@@ -51,7 +51,7 @@ rule segment:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=4000,
+        mem_mb=memory_to_segment,
     params:
         code=code_of("segment"),
         settings=settings_of("segment"),

@@ -15,7 +15,7 @@ from zarr.storage import MemoryStore, ZipStore
 
 from threedfs.errors import UserError
 from threedfs.io.atomic import atomic
-from threedfs.io.schema import check_schema, rule_of
+from threedfs.io.schema import Schema, check_schema
 
 _EPOCH = (1980, 1, 1, 0, 0, 0)
 _COMPRESSOR = BloscCodec(cname="zstd", clevel=1, shuffle="shuffle", typesize=None)
@@ -74,24 +74,23 @@ class ArrayWriter:
 
 
 @contextmanager
-def writing_arrays(path: Path, schema: str, header: Mapping[str, Any]) -> Iterator[ArrayWriter]:
+def writing_arrays(path: Path, schema: Schema, header: Mapping[str, Any]) -> Iterator[ArrayWriter]:
     """Open an artifact for writing; it appears under its name only when the block ends well.
 
     Parameters
     ----------
     path : Path
-    schema : str
-        e.g. ``"threedfs/depth-map/1"``.
+    schema : Schema
     header : mapping
         Parameters and provenance of the job (`Job.header`).
     """
     with atomic(path) as temporary, zipfile.ZipFile(temporary, "w", zipfile.ZIP_STORED) as file:
-        writer = ArrayWriter(file, {"schema": schema, **header})
+        writer = ArrayWriter(file, {"schema": schema.name, **header})
         yield writer
         writer.finish()
 
 
-def open_arrays(path: Path, schema: str) -> zarr.Group:
+def open_arrays(path: Path, schema: Schema) -> zarr.Group:
     """Open an artifact for reading; chunks are read when indexed.
 
     Raises
@@ -101,13 +100,13 @@ def open_arrays(path: Path, schema: str) -> zarr.Group:
     """
     path = Path(path)
     if not path.is_file():
-        raise UserError(f"{path}: expected a file of schema {schema}, found none; rule {rule_of(schema)} writes it.")
+        raise UserError(f"{path}: expected a file of schema {schema.name}, found none; rule {schema.rules} writes it.")
     try:
         group = zarr.open_group(ZipStore(path, mode="r"), mode="r", zarr_format=3)
     except (zipfile.BadZipFile, FileNotFoundError, ValueError) as fault:
         raise UserError(
-            f"{path}: expected a whole file of schema {schema}, got a damaged one ({fault}); "
-            f"delete it and run again, rule {rule_of(schema)} writes it."
+            f"{path}: expected a whole file of schema {schema.name}, got a damaged one ({fault}); "
+            f"delete it and run again, rule {schema.rules} writes it."
         ) from fault
     check_schema(path, group.attrs.get("schema"), schema)
     return group
@@ -115,7 +114,7 @@ def open_arrays(path: Path, schema: str) -> zarr.Group:
 
 def write_arrays(
     path: Path,
-    schema: str,
+    schema: Schema,
     arrays: Mapping[str, np.ndarray],
     header: Mapping[str, Any],
     notes: Mapping[str, Mapping[str, Any]] | None = None,
@@ -127,7 +126,7 @@ def write_arrays(
             writer.put(name, data, **dict((notes or {}).get(name, {})))
 
 
-def read_arrays(path: Path, schema: str) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
+def read_arrays(path: Path, schema: Schema) -> tuple[dict[str, np.ndarray], dict[str, Any]]:
     """Read all arrays of an artifact and its attributes."""
     group = open_arrays(path, schema)
     return {name: np.asarray(array[...]) for name, array in group.arrays()}, dict(group.attrs)

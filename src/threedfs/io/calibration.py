@@ -8,8 +8,10 @@ from pathlib import Path
 from typing import Any
 
 from threedfs.io.documents import read_document, write_document
-from threedfs.io.schema import CALIBRATION
+from threedfs.io.schema import Schema
 from threedfs.types import Camera
+
+CALIBRATION = Schema("threedfs/calibration/1", "calibrate")
 
 
 @dataclass(frozen=True)

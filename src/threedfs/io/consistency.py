@@ -12,7 +12,9 @@ import zarr
 
 from threedfs.checks import check_shape
 from threedfs.io.arrays import open_arrays, writing_arrays
-from threedfs.io.schema import CONSISTENCY
+from threedfs.io.schema import Schema
+
+CONSISTENCY = Schema("threedfs/consistency/1", "consistency")
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,12 @@ from typing import Any
 import numpy as np
 
 from threedfs.io.arrays import read_arrays, write_arrays
-from threedfs.io.schema import DEPTH_MAP, EDGES, SEMIDENSE, STEREO
+from threedfs.io.schema import Schema
+
+DEPTH_MAP = Schema("threedfs/depth-map/1", "depth")
+EDGES = Schema("threedfs/edges/1", "edges")
+SEMIDENSE = Schema("threedfs/semidense/1", "semidense")
+STEREO = Schema("threedfs/stereo/1", "stereo or stereo_check")
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 
 from threedfs.io.arrays import read_arrays, write_arrays
-from threedfs.io.schema import DEPTH_TRIAL
+from threedfs.io.schema import Schema
+
+DEPTH_TRIAL = Schema("threedfs/depth-trial/1", "depth_trial")
 
 
 @dataclass(frozen=True)

@@ -9,17 +9,17 @@ from typing import Any
 
 from threedfs.errors import UserError
 from threedfs.io.atomic import atomic
-from threedfs.io.schema import check_schema, rule_of
+from threedfs.io.schema import Schema, check_schema
 
 
-def write_document(path: Path, schema: str, content: Mapping[str, Any], header: Mapping[str, Any]) -> None:
+def write_document(path: Path, schema: Schema, content: Mapping[str, Any], header: Mapping[str, Any]) -> None:
     """Write a mapping of plain values under a schema; NaN is refused."""
-    text = json.dumps({"schema": schema, **header, **content}, sort_keys=True, indent=1, allow_nan=False)
+    text = json.dumps({"schema": schema.name, **header, **content}, sort_keys=True, indent=1, allow_nan=False)
     with atomic(path) as temporary:
         temporary.write_text(text + "\n", encoding="utf-8")
 
 
-def read_document(path: Path, schema: str) -> dict[str, Any]:
+def read_document(path: Path, schema: Schema) -> dict[str, Any]:
     """Read a mapping written by `write_document`.
 
     Raises
@@ -32,9 +32,9 @@ def read_document(path: Path, schema: str) -> dict[str, Any]:
         content = json.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         raise UserError(
-            f"{path}: expected a file of schema {schema}, found none; rule {rule_of(schema)} writes it."
+            f"{path}: expected a file of schema {schema.name}, found none; rule {schema.rules} writes it."
         ) from None
     except (UnicodeDecodeError, json.JSONDecodeError) as fault:
-        raise UserError(f"{path}: expected JSON of schema {schema}, got something else ({fault}).") from fault
+        raise UserError(f"{path}: expected JSON of schema {schema.name}, got something else ({fault}).") from fault
     check_schema(path, content.get("schema"), schema)
     return content

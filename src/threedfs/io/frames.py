@@ -11,7 +11,9 @@ import numpy as np
 import zarr
 
 from threedfs.io.arrays import open_arrays, writing_arrays
-from threedfs.io.schema import FRAMES
+from threedfs.io.schema import Schema
+
+FRAMES = Schema("threedfs/frames/1", "frames or undistort")
 
 
 @dataclass(frozen=True)

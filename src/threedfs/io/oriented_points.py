@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from threedfs.io.arrays import read_arrays, write_arrays
-from threedfs.io.schema import ORIENTED_POINTS
+from threedfs.io.schema import Schema
 from threedfs.types import OrientedPoints
+
+ORIENTED_POINTS = Schema("threedfs/oriented-points/1", "densify")
 
 
 def write_oriented_points(

@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from threedfs.io.arrays import read_arrays, write_arrays
-from threedfs.io.schema import POINTS
+from threedfs.io.schema import Schema
 from threedfs.types import SparsePoints
+
+POINTS = Schema("threedfs/sparse-points/1", "poses")
 
 
 def write_points(path: Path, points: SparsePoints, header: Mapping[str, Any]) -> None:

@@ -11,9 +11,11 @@ import numpy as np
 
 from threedfs.geometry.similarity import Similarity
 from threedfs.io.documents import read_document, write_document
-from threedfs.io.schema import POSES
+from threedfs.io.schema import Schema
 from threedfs.io.views import decode_view, encode_view
 from threedfs.types import View
+
+POSES = Schema("threedfs/poses/1", "poses")
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,10 @@ from typing import Any
 import numpy as np
 
 from threedfs.io.arrays import read_arrays, write_arrays
-from threedfs.io.schema import SEGMENTATION
+from threedfs.io.schema import Schema
 from threedfs.types import VoxelGrid
+
+SEGMENTATION = Schema("threedfs/segmentation/1", "segment or volumetric_cut")
 
 _MASK = "mask_"
 

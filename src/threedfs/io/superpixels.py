@@ -7,8 +7,10 @@ from pathlib import Path
 from typing import Any
 
 from threedfs.io.arrays import read_arrays, write_arrays
-from threedfs.io.schema import SUPERPIXELS
+from threedfs.io.schema import Schema
 from threedfs.segment.superpixels import Superpixels
+
+SUPERPIXELS = Schema("threedfs/superpixels/1", "superpixels")
 
 
 def write_superpixels(path: Path, superpixels: Superpixels, header: Mapping[str, Any]) -> None:

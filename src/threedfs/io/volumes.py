@@ -11,8 +11,12 @@ import numpy as np
 
 from threedfs.io.arrays import read_arrays, write_arrays
 from threedfs.io.documents import read_document, write_document
-from threedfs.io.schema import SILHOUETTES, SUPPORT, VOLUME
+from threedfs.io.schema import Schema
 from threedfs.types import Plane, VoxelGrid
+
+SILHOUETTES = Schema("threedfs/silhouettes/1", "object, poisson, pixel_masks or cut_object")
+SUPPORT = Schema("threedfs/support/1", "locate")
+VOLUME = Schema("threedfs/volume/1", "fuse_scene, fuse_object, fuse_baseline, deform or object")
 
 
 @dataclass(frozen=True)

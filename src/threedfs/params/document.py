@@ -43,7 +43,7 @@ skip_absent: false
 
 # How the object is made: fused_sdf, deformed_sdf, volumetric_gc, gc_2d, gc_2d3d_pixel, gc_2d3d_voxel, gc_select,
 # sdf_2d3d_voxel, tsdf, soft_maximum, hard_maximum, poisson.
-methods: [fused_sdf]
+methods: [sdf_2d3d_voxel, gc_2d3d_pixel]
 
 # Of every random choice.
 seed: 0

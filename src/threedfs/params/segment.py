@@ -119,7 +119,7 @@ class SegmentParams(ComponentSettings):
         minimum=0.0,
     )
     silhouette_weight: float = parameter(
-        2.0, "weight of the voxels' silhouette (paper: 1)", symbol="lambda_sil", equation="Eq. 23", minimum=0.0
+        3.0, "weight of the voxels' silhouette (paper: 1)", symbol="lambda_sil", equation="Eq. 23", minimum=0.0
     )
     silhouette_ramp: float = parameter(
         6.0,

@@ -35,15 +35,18 @@ class TableMatch:
         Lab.
     density : (...) float32
         Log density of the pixel's colour if it shows the support surface.
+    beneath : (...) bool
+        Whether solid stands on that spot: what views show there may be the object's own foot.
     """
 
     known: np.ndarray
     color: np.ndarray
     density: np.ndarray
+    beneath: np.ndarray
 
     def at(self, mask: np.ndarray) -> TableMatch:
         """Return the pixels of a mask."""
-        return TableMatch(self.known[mask], self.color[mask], self.density[mask])
+        return TableMatch(self.known[mask], self.color[mask], self.density[mask], self.beneath[mask])
 
 
 @dataclass(frozen=True)
@@ -61,7 +64,7 @@ class ColorModel:
         lab : (N, 3) float32
         table : TableMatch, optional
             Where it is known how the support surface looks at a pixel, the background is expected to look so, and its
-            mixture keeps the share `_UNEXPECTED`. What looks like the object there, as at its foot, is not believed.
+            mixture keeps the share `_UNEXPECTED`. What looks like the object beneath it is not believed.
         """
         of_object, background = self.of_object.score_samples(lab), self.of_background.score_samples(lab)
         if table is not None and table.known.any():
@@ -69,7 +72,8 @@ class ColorModel:
             lean = self.of_object.score_samples(table.color[known]) - self.of_background.score_samples(
                 table.color[known]
             )
-            trust = (1 - _UNEXPECTED) / (1 + np.exp(np.clip(lean - _LIKENESS, -50, 50)))
+            doubt = np.where(table.beneath[known], np.exp(np.clip(lean - _LIKENESS, -50, 50)), 0)
+            trust = (1 - _UNEXPECTED) / (1 + doubt)
             expected = np.log(np.maximum(trust, 1e-300)) + table.density[known]
             background[known] = np.logaddexp(np.log(1 - trust) + background[known], expected)
         return 1 / (1 + np.exp(np.clip(background - of_object, -50, 50)))

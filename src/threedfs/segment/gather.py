@@ -171,7 +171,8 @@ def gather_images(
     if rule.table:
         covered = {name: cv2.dilate(mask.astype(np.uint8), np.ones((5, 5))) > 0 for name, mask in hides.items()}
         low, high = scene.low - reach, scene.high + reach
-        table = picture_table(scene.images, scene.views, covered, scene.valid, scene.plane, low, high)
+        solid = scene.grid.origin + scene.grid.spacing * np.argwhere(bounds.hides)
+        table = picture_table(scene.images, scene.views, covered, scene.valid, scene.plane, solid, low, high)
     evidence = {}
     for name, view in scene.views.items():
         superpixels = scene.superpixels[name]

@@ -19,6 +19,8 @@ _SPREAD = 0.9
 """Standard deviation of a channel per median distance in Lab; of a normal distribution it would be 0.65."""
 _WIDEST = 10.0
 """Median distance in Lab above which the views do not show one surface at a spot."""
+_AROUND = 13
+"""Pixels of the picture by which what is beneath the object is enlarged, in all."""
 _LONGEST = 900
 """Pixels along the longer side of the flat picture, so that memory does not grow with the images."""
 
@@ -34,6 +36,8 @@ class TablePicture:
     spread : (H, W) float32
         Median distance of their colours from it, Lab.
     known : (H, W) bool
+    beneath : (H, W) bool
+        Where the object stands on it.
     world_from_picture : (4, 3) float64
         Homogeneous world points of homogeneous pixels (u, v, 1).
     """
@@ -41,20 +45,23 @@ class TablePicture:
     color: np.ndarray
     spread: np.ndarray
     known: np.ndarray
+    beneath: np.ndarray
     world_from_picture: np.ndarray
 
-    def predict(self, view: View) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Return colour (H, W, 3), spread (H, W) and whether they are known (H, W) at the pixels of a view."""
+    def predict(self, view: View) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Return colour (H, W, 3), spread, whether known, and what is beneath the object, by the pixels of a view."""
         image_from_picture = view.px_from_world @ self.world_from_picture
         size = (view.camera.width, view.camera.height)
-        color, spread, known = (
+        color, spread, known, beneath = (
             cv2.warpPerspective(array, image_from_picture, size, flags=cv2.INTER_LINEAR)
-            for array in (self.color, self.spread, self.known.astype(np.float32))
+            for array in (self.color, self.spread, self.known.astype(np.float32), self.beneath.astype(np.float32))
         )
-        return color, spread, known > 0.99
+        return color, spread, known > 0.99, beneath > 0
 
 
-def match_table(lab: np.ndarray, color: np.ndarray, spread: np.ndarray, known: np.ndarray) -> TableMatch:
+def match_table(
+    lab: np.ndarray, color: np.ndarray, spread: np.ndarray, known: np.ndarray, beneath: np.ndarray
+) -> TableMatch:
     """Compare an image with the support surface as it would look in it.
 
     The best match within a pixel around counts, as cameras are not exact to a pixel.
@@ -62,7 +69,7 @@ def match_table(lab: np.ndarray, color: np.ndarray, spread: np.ndarray, known: n
     Parameters
     ----------
     lab : (H, W, 3) float32
-    color, spread, known
+    color, spread, known, beneath
         As `TablePicture.predict` gives them.
     """
     deviation = np.sqrt(_NOISE**2 + (_SPREAD * spread) ** 2)
@@ -73,7 +80,7 @@ def match_table(lab: np.ndarray, color: np.ndarray, spread: np.ndarray, known: n
             apart = np.where(np.roll(known, (down, across), axis=(0, 1)), ((lab - moved) ** 2).sum(-1), np.inf)
             best = np.minimum(best, apart)
     density = -0.5 * best / deviation**2 - 3 * np.log(deviation) - 1.5 * np.log(2 * np.pi)
-    return TableMatch(known, color, density.astype(np.float32))
+    return TableMatch(known, color, density.astype(np.float32), beneath)
 
 
 def picture_table(
@@ -82,6 +89,7 @@ def picture_table(
     covered: Mapping[str, np.ndarray],
     valid: np.ndarray,
     plane: Plane,
+    solid: np.ndarray,
     low: np.ndarray,
     high: np.ndarray,
 ) -> TablePicture:
@@ -98,6 +106,8 @@ def picture_table(
         Pixels that may show the object.
     valid : (H, W) bool
     plane : Plane
+    solid : (N, 3) float64
+        World points inside the object.
     low, high : (3,) float64
         Box around what the picture is needed for, world.
     """
@@ -115,7 +125,18 @@ def picture_table(
     color[known] = np.nanmedian(stack[:, known], axis=0)
     spread[known] = np.nanmedian(np.linalg.norm(stack[:, known] - color[known], axis=-1), axis=0)
     known &= spread < _WIDEST
-    return TablePicture(color, spread, known, world_from_picture)
+    return TablePicture(color, spread, known, _stand_on(world_from_picture, solid, known.shape), world_from_picture)
+
+
+def _stand_on(world_from_picture, solid, shape):
+    """Mark where points inside the object lie straight above the picture, and a little around."""
+    across, along, origin = world_from_picture[:3].T
+    step = across @ across  # both axes have the length of a pixel, at right angles
+    u, v = (np.rint((solid - origin) @ axis / step).astype(np.int64) for axis in (across, along))
+    inside = (u >= 0) & (v >= 0) & (u < shape[1]) & (v < shape[0])
+    beneath = np.zeros(shape, np.uint8)
+    beneath[v[inside], u[inside]] = 1
+    return cv2.dilate(beneath, np.ones((_AROUND, _AROUND), np.uint8)) > 0
 
 
 def _lay_out(plane, low, high, views):

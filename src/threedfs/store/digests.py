@@ -104,7 +104,7 @@ class InputDigests:
                 content = json.loads(value.read_text(encoding="utf-8"))
             except ValueError:
                 content = None  # a user's file that is no JSON: the stage says so
-            if isinstance(content, dict) and content.get("schema") == KEYFRAMES:
+            if isinstance(content, dict) and content.get("schema") == KEYFRAMES.name:
                 return digest_value(content["keyframes"].get(keyframe))
         return self.any(value)
 
