@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from scipy import ndimage
 
-from threedfs.geometry.projection import project
+from threedfs.segment.lookup import find_pixels
 from threedfs.segment.outline import draw_voxels
 from threedfs.types import View, VoxelGrid
 
@@ -58,11 +58,9 @@ def fit_masks(
             continue  # it does not show the object at all
         outside = ndimage.distance_transform_edt(~mask) - ndimage.distance_transform_edt(mask)
         outside -= 0.5 * np.sign(outside)
-        pixels, depth = project(view, centres)
-        column, row = (np.rint(np.nan_to_num(pixels[:, axis], nan=-1)).astype(np.int64) for axis in (0, 1))
-        kept = (column >= 0) & (column < view.camera.width) & (row >= 0) & (row < view.camera.height)
-        row, column = row[kept], column[kept]
-        scale = depth[kept] / (view.camera.fx * grid.spacing * ramp)
+        row, column, kept = find_pixels(view, centres)
+        depth = centres[kept] @ view.cam_from_world[2, :3] + view.cam_from_world[2, 3]
+        scale = depth / (view.camera.fx * grid.spacing * ramp)
         distances[rank, kept] = np.clip(outside[row, column] * scale, -1, 1)
         gaps[kept] += (mask & ~covered[name])[row, column]
     allowance = min(int(tolerance * len(views)), len(views) - 1)

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 from scipy import ndimage
 
-from threedfs.geometry.projection import project
 from threedfs.segment.energy import BACKGROUND, EMPTY, OBJECT
+from threedfs.segment.lookup import find_pixels
 from threedfs.types import View
 
 
@@ -66,9 +66,7 @@ def carve_unary(
     """
     outside, shown = np.zeros(len(centres), np.int32), np.zeros(len(centres), np.int32)
     for name, view in views.items():
-        pixels, _ = project(view, centres)
-        column, row = (np.rint(np.nan_to_num(pixels[:, axis], nan=-1)).astype(np.int64) for axis in (0, 1))
-        kept = (column >= 0) & (column < view.camera.width) & (row >= 0) & (row < view.camera.height)
+        row, column, kept = find_pixels(view, centres)
         shown += kept
-        outside[kept] += ~masks[name][row[kept], column[kept]]
+        outside[kept] += ~masks[name][row, column]
     return (outside > tolerance * shown).astype(np.float32)

@@ -13,6 +13,7 @@ from threedfs.geometry.projection import project
 from threedfs.segment.alpha_expansion import expand
 from threedfs.segment.color_model import fit_color_model, lab_image
 from threedfs.segment.energy import BACKGROUND, EMPTY, OBJECT, LabelGraph
+from threedfs.segment.lookup import find_pixels
 from threedfs.segment.outline import draw_voxels
 from threedfs.segment.pairwise import voxel_pairs
 from threedfs.types import View, VoxelGrid
@@ -125,10 +126,8 @@ def _mean_cost(centres, views, lab, model, least):
     total, shown = np.zeros(len(centres)), np.zeros(len(centres))
     for name, view in views.items():
         chance = model.posterior(lab[name].reshape(-1, 3)).reshape(view.camera.shape)
-        pixels, _ = project(view, centres)
-        column, row = (np.rint(np.nan_to_num(pixels[:, axis], nan=-1)).astype(np.int64) for axis in (0, 1))
-        kept = (column >= 0) & (column < view.camera.width) & (row >= 0) & (row < view.camera.height)
-        total[kept] += chance[row[kept], column[kept]]
+        row, column, kept = find_pixels(view, centres)
+        total[kept] += chance[row, column]
         shown[kept] += 1
     mean = total / np.maximum(shown, 1)
     return np.stack([mean * (1 - least), (1 - mean) * least], axis=1)
