@@ -4,32 +4,18 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from threedfs.params.component import ComponentSettings
+from threedfs.params.component import StandingSettings
 from threedfs.params.field import parameter
 
 
 @dataclass(frozen=True)
-class SegmentParams(ComponentSettings):
+class SegmentParams(StandingSettings):
     """How superpixels and voxels are labelled together."""
 
     field: str = parameter(
         "fused",
         "the field that is weighed, and cut out by sdf_2d3d_voxel: as fused, or corrected by surface points (paper)",
         choices=("fused", "deformed"),
-    )
-    clearance: float = parameter(
-        1.0,
-        "least height above the plane from which voxels may belong to the object at first",
-        unit="voxel",
-        symbol="tau",
-        equation="Sec. 3.4.2",
-        minimum=0.0,
-    )
-    noise_clearance: float = parameter(
-        2.0,
-        "least height likewise, for surfaces rougher than a voxel",
-        unit="standard deviation of the support from its plane",
-        minimum=0.0,
     )
     outer_level: float = parameter(
         0.5,
