@@ -34,7 +34,7 @@ rule all:
         [
             f"results/{sequence}/11_object/{method}/{name}"
             for sequence in OBJECTS
-            for method in config["methods"]
+            for method in METHODS
             for name in results_of_method(method)
         ],
         "results/metrics.csv",

@@ -106,6 +106,22 @@ def test_benchmark_holds_every_object_of_the_paper_every_real_sequence():
     assert set(benchmark["depth_experiment"]["sequences"]) <= set(sequences)
 
 
+def test_every_variant_of_the_ablation_changes_a_default(defaults):
+    ablation = yaml.safe_load((ROOT / "config/ablation.yaml").read_text())
+    check_configuration({**defaults, **ablation}, configuration_schema())
+    for stages in ablation["variants"].values():
+        assert all(value != defaults[stage][name] for stage, own in stages.items() for name, value in own.items())
+
+
+def test_the_printed_variant_is_the_preset_of_the_paper(defaults):
+    printed = yaml.safe_load((ROOT / "config/ablation.yaml").read_text())["variants"]["paper"]
+    preset = yaml.safe_load((ROOT / "config/presets/paper.yaml").read_text())
+    for stage, own in printed.items():
+        changed = {name: value for name, value in preset[stage].items() if value != defaults[stage][name]}
+        changed.pop("field", None)  # the variant takes the field of the others
+        assert own == changed
+
+
 def test_paper_preset_differs_from_the_defaults_where_it_speaks(defaults):
     paper = yaml.safe_load((ROOT / "config/presets/paper.yaml").read_text())
     assert any(paper[stage][name] != defaults[stage][name] for stage in paper for name in paper[stage])

@@ -6,7 +6,7 @@ import trimesh
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from threedfs.evaluate.mesh_error import bounding_diagonal, is_closed, measure_mesh
+from threedfs.evaluate.mesh_error import bounding_diagonal, count_pieces, filled_share, is_closed, measure_mesh
 from threedfs.evaluate.surface import SurfaceDistance, sample_surface, triangle_distance
 from threedfs.types import Mesh
 
@@ -129,3 +129,20 @@ def test_closed_means_every_edge_twice_and_opposite():
     flipped[0] = flipped[0, ::-1]
     assert not is_closed(Mesh(whole.vertices, flipped))
     assert not is_closed(Mesh(whole.vertices, np.concatenate([whole.faces, whole.faces])))
+
+
+def test_pieces_share_no_vertex():
+    whole = sphere(1.0, 1)
+    shifted = Mesh(
+        np.concatenate([whole.vertices, whole.vertices + 3]), np.concatenate([whole.faces, whole.faces + 42])
+    )
+    assert len(whole.vertices) == 42
+    assert count_pieces(whole) == 1 and count_pieces(shifted) == 2
+    assert count_pieces(Mesh(shifted.vertices, whole.faces)) == 1  # vertices of no face are no piece
+
+
+def test_the_filled_share_of_a_ball_is_pi_over_six_and_turns_with_its_faces():
+    ball = sphere(2.0)
+    assert filled_share(ball) == pytest.approx(np.pi / 6, rel=0.01)
+    assert filled_share(Mesh(ball.vertices + 7, ball.faces[:, ::-1])) == pytest.approx(-filled_share(ball))
+    assert filled_share(ball) == pytest.approx(trimesh.Trimesh(ball.vertices, ball.faces).volume / 64, rel=1e-2)

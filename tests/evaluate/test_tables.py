@@ -15,6 +15,7 @@ from threedfs.evaluate.tables import (
     pose_tables,
     unseen_tables,
 )
+from threedfs.evaluate.variant_tables import variant_tables
 from threedfs.io.metrics import Metric
 
 STATIC = Failure("books", "poses", "", "the camera hardly moves.")
@@ -60,6 +61,25 @@ def test_a_failed_sequence_tells_why_and_stays_out_of_the_mean():
     assert not any(row[0] == "lamp" for row in table.rows)
 
 
+def test_variants_are_compared_with_their_method_over_the_sequences_of_both():
+    values = {("mug", "cut"): 0.9, ("can", "cut"): 0.8, ("mug", "cut@off"): 0.85, ("can", "cut@off"): 0.82}
+    values |= {("mug", "cut@late"): 0.8, ("mug", "other"): 0.5}
+    rows = {(*key, "iou_mean"): value for key, value in values.items()}
+    late = Failure("can", "segment", "joint@late", "nothing open.")
+    (table,) = variant_tables(scores(rows, methods=("cut", "other"), failures=[late]), "toys")
+    assert "variants of cut, toys" in table.title
+    found = cells(table)
+    assert found["as configured", "IoU mean"] == "0.850" and found["off", "IoU mean"] == "0.835"
+    assert found["off", "change"] == "-0.015 [-0.050, +0.020]"
+    assert found["off", "worst"] == "-0.050 mug" and found["off", "best"] == "+0.020 can"
+    assert found["off", "lower on"] == "1" and found["off", "sequences"] == "2 of 2"
+    assert found["late", "IoU mean"] == "0.800" and found["late", "sequences"] == "1 of 2"
+    assert "can joint@late failed: segment: nothing open." in table.note
+    assert variant_tables(scores(rows, methods=("other",)), "toys") == []
+    overlap = overlap_tables(scores(rows, methods=("cut", "other"), failures=[late]), "toys")[0]
+    assert cells(overlap)["can", "cut"] == "0.800"  # a variant that failed is no fault of its method
+
+
 def test_overlap_names_the_failed_even_where_nothing_was_measured():
     table, _ = overlap_tables(scores({}, {"books": "toys"}, failures=[STATIC]), "toys")
     assert cells(table)["books", "fused_sdf"] == str(STATIC)
@@ -87,7 +107,7 @@ def test_printed_means_and_medians_are_those_of_the_printed_numbers(method):
 
 
 def test_tables_that_have_no_figure_are_left_out():
-    empty = scores({("mug", "fused_sdf", "mesh_closed"): 1.0})
+    empty = scores({("mug", "fused_sdf", "frames_posed"): 1.0})
     for make in (overlap_tables, unseen_tables, pose_tables, mesh_tables, depth_tables, experiment_tables):
         assert make(empty, "toys") == []
     assert cost_tables(empty, "toys", ()) == []
@@ -103,6 +123,9 @@ def test_figures_of_all_kinds_come_where_they_belong():
         ("mug", "fused_sdf", "mesh_chamfer"): 0.55,
         ("mug", "fused_sdf", "mesh_f_score_0.5"): 0.61,
         ("mug", "fused_sdf", "mesh_f_score_1"): 0.81,
+        ("mug", "fused_sdf", "mesh_closed"): 1.0,
+        ("mug", "fused_sdf", "mesh_pieces"): 1.0,
+        ("mug", "fused_sdf", "mesh_filled"): 0.52,
         ("mug", "fused_sdf", "depth_rmse"): 0.0123,
         ("mug", "fused_sdf", "depth_within_10"): 99.0,
     }
@@ -112,8 +135,8 @@ def test_figures_of_all_kinds_come_where_they_belong():
     assert poses["mug", "centre, median, % of path"] == "0.250"
     assert poses["mug", "rotation, median, degrees"] == "0.125" and poses["mug", "rotation, largest"] == "-"
     (mesh,) = mesh_tables(made, "toys")
-    assert mesh.rows[0] == ("mug", "0.500", "0.600", "0.550", "0.610", "0.810")
-    assert mesh.header[-2:] == ("F-score at 0.5 %", "F-score at 1 %")
+    assert mesh.rows[0] == ("mug", "0.500", "0.600", "0.550", "0.610", "0.810", "1", "1", "0.52")
+    assert mesh.header[-5:] == ("F-score at 0.5 %", "F-score at 1 %", "closed", "pieces", "filled")
     depth = cells(depth_tables(made, "toys")[0])
     assert depth["mug", "within 10 %"] == "99.0" and depth["mug", "RMSE, unit of the truth"] == "0.0123"
 

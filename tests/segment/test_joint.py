@@ -148,6 +148,22 @@ def test_an_object_that_loses_all_its_voxels_is_refused():
         segment(scene, repelled)
 
 
+def test_keyframes_without_links_are_named_and_refused_if_they_are_all():
+    scene, _ = make_scene(views=4)
+    gather, rule = rules(DEFAULTS)
+    rng = np.random.default_rng(0)
+    volume, bounds = gather_voxels(scene, gather)
+    images = gather_images(scene, volume, bounds, gather, rng)
+    bare = {name: replace(e, link_pairs=e.link_pairs[:0], link_weight=e.link_weight[:0]) for name, e in images.items()}
+    first = next(iter(images))
+    notes = []
+    segment_jointly({**images, first: bare[first]}, volume, rule, rng, notes.append)
+    assert notes[0].startswith(f"no link with voxels in {first}:")
+    with pytest.raises(UserError, match="found none in any of 4 keyframes"):
+        segment_jointly(bare, volume, rule, rng)
+    assert segment_jointly(bare, None, rule, rng).voxels is None  # images alone need none
+
+
 def test_masks_carve_and_fill_a_field():
     scene, truth = make_scene(views=12)
     centres, height = voxel_centres(scene.grid), height_above(PLANE, scene.grid)

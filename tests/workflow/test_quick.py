@@ -86,7 +86,8 @@ def test_the_segmentation_is_measured_with_and_without_a_mesh(run):
     overlap = {method: value for (method, name), value in found.items() if name == "iou_mean"}
     assert {"gc_2d", "gc_2d3d_pixel", "sdf_2d3d_voxel", "volumetric_gc"} < set(overlap), output
     assert min(overlap["gc_2d3d_pixel"], overlap["sdf_2d3d_voxel"]) > 0.6
-    assert found["sdf_2d3d_voxel", "mesh_closed"] == 1 and ("gc_2d3d_pixel", "mesh_closed") not in found
+    assert found["sdf_2d3d_voxel", "mesh_closed"] == found["sdf_2d3d_voxel", "mesh_pieces"] == 1
+    assert found["sdf_2d3d_voxel", "mesh_filled"] > 0 and ("gc_2d3d_pixel", "mesh_closed") not in found
 
 
 def test_the_others_are_named_with_their_reason(run):

@@ -32,6 +32,15 @@ CASES = {
     ),
     "odd width": ("render: {width: 100}", "render.width: expected a multiple of 8, got 100"),
     "unknown method": ("methods: [magic]", "methods.0: expected one of fused_sdf"),
+    "variant of nothing": (
+        "methods: [tsdf]\nvariants: {a: {}}",
+        "variants: expected a method that has variants, one of",
+    ),
+    "variant of another stage": ("variants: {a: {depth: {}}}", "variants.a: unknown key depth"),
+    "variant out of range": (
+        "variants: {a: {segment: {link_weight: -1}}}",
+        "variants.a.segment.link_weight: expected at least 0, got -1",
+    ),
     "negative seed": ("seed: -1", "seed: expected at least 0, got -1"),
 }
 

@@ -191,6 +191,33 @@ def test_methods_of_the_segmentation_share_their_cuts(finished):
     assert jobs_done(finished.run("--configfile", "deformed.yaml"))["deform"] == 1
 
 
+def test_variants_cut_again_with_their_settings_and_get_a_table(finished):
+    """Contract: one that changes the cut has labels of its own; one of the mesh takes the configured ones."""
+    (finished.folder / "variants.yaml").write_text(
+        "methods: [fused_sdf, gc_2d3d_pixel, sdf_2d3d_voxel]\n"
+        "variants: {no_table: {segment: {table: false}}, coarse: {cut_object: {dilation: 5}}}\n"
+    )
+    output = finished.run("--configfile", "variants.yaml")
+    expected = {"superpixels": 2, "segment": 2, "cut_object": 3, "pixel_masks": 3, "evaluate": 6, "collect": 1}
+    assert jobs_done(output) == Counter(expected)
+    results = finished.folder / "results/sample"
+    plain, other = (
+        json.loads((results / f"10_segment/joint{name}.zarr.zip").read_text()) for name in ("", "@no_table")
+    )
+    assert "table=True" in plain["params"] and "table=False" in other["params"]
+    assert plain["names"] == other["names"] == {"cut": "joint"}
+    for variant, cut in {"": "joint", "@no_table": "joint@no_table", "@coarse": "joint"}.items():
+        made = json.loads((results / f"11_object/sdf_2d3d_voxel{variant}/mesh.ply").read_text())
+        assert (
+            made["inputs"]["labels"]
+            == hashlib.sha256((results / f"10_segment/{cut}.zarr.zip").read_bytes()).hexdigest()
+        )
+        assert f"dilation={5 if variant == '@coarse' else 2}" in made["params"]
+    table = (finished.folder / "results/tables/variants.md").read_text()
+    assert table.count("| no_table ") == table.count("| coarse ") == 2
+    assert "@" not in (finished.folder / "results/tables/iou.md").read_text()
+
+
 def test_points_switched_off_need_no_stereo(finished):
     (finished.folder / "off.yaml").write_text("methods: [deformed_sdf]\ndensify: {points: off}\n")
     output = finished.run("--configfile", "off.yaml")

@@ -23,10 +23,14 @@ THREADS = 2 if len(SEQUENCES) == 1 else 1
 STORE_DIGESTS = InputDigests(Path(config["store"]) / "digests")
 
 
+VARIANTS = config["variants"] or {}
+
+
 wildcard_constraints:
     sequence="[^/]+",
     keyframe="[^/]+",
     method="[^/]+",
+    variant="(@[^/]+)?",  # of the joint segmentation; empty for the configuration itself
 
 
 def code_of(stage, *modules):
@@ -35,7 +39,7 @@ def code_of(stage, *modules):
 
 
 def settings_of(stage):
-    """Return a function of the wildcards: the slice of the configuration that a stage reads, and the sequence's own."""
+    """Return a function of the wildcards: the configuration that a stage reads, the sequence's own, the variant's."""
 
     def find(wildcards):
         own = (
@@ -43,6 +47,7 @@ def settings_of(stage):
             if "sequence" in wildcards.keys()
             else {}
         )
-        return config.get(stage, {}) | own.get(stage, {})
+        variant = VARIANTS.get(wildcards.get("variant", "")[1:], {})
+        return config.get(stage, {}) | own.get(stage, {}) | variant.get(stage, {})
 
     return find

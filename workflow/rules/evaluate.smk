@@ -47,7 +47,7 @@ rule collect:
         tables=expand(
             "results/{sequence}/12_evaluate/{method}/metrics.csv",
             sequence=OBJECTS,
-            method=config["methods"],
+            method=METHODS,
         ),
         depth_tables=expand(
             "results/{sequence}/12_depth_experiment/metrics.csv", sequence=TRIED

@@ -14,6 +14,15 @@ CUTS = {  # which labels of voxels the other methods with a mesh take it from
     "sdf_2d3d_voxel": "joint",
 }
 PIXEL_CUTS = {"gc_2d": "images", "gc_2d3d_pixel": "joint"}  # methods of masks alone
+METHODS = [
+    *config["methods"],
+    *(
+        f"{method}@{variant}"
+        for method in config["methods"]
+        if (CUTS | PIXEL_CUTS).get(method) == "joint"
+        for variant in VARIANTS
+    ),
+]
 
 
 def given(key):
@@ -70,7 +79,8 @@ def if_wide(pattern):
 
 def results_of_method(method):
     """Return the names of what a method makes: those of pixels have no mesh."""
-    return ["masks"] if method in PIXEL_CUTS else ["mesh.ply", "masks"]
+    has_mesh = method.partition("@")[0] not in PIXEL_CUTS
+    return ["mesh.ply", "masks"] if has_mesh else ["masks"]
 
 
 def mesh_of_method(wildcards):
@@ -82,7 +92,9 @@ def mesh_of_method(wildcards):
 def labels_of_method(wildcards):
     """Return the labels that a method takes the object from."""
     cut = (CUTS | PIXEL_CUTS)[wildcards.method]
-    return f"results/{wildcards.sequence}/10_segment/{cut}.zarr.zip"
+    own = "segment" in VARIANTS.get(wildcards.variant[1:], {})
+    name = f"{cut}{wildcards.variant if own else ''}"
+    return f"results/{wildcards.sequence}/10_segment/{name}.zarr.zip"
 
 
 def field_to_segment(wildcards):

@@ -74,13 +74,13 @@ rule cut_object:
         poses="results/{sequence}/02_poses/poses.json",
         frames="results/{sequence}/01_frames/frames.zarr.zip",
     output:
-        mesh="results/{sequence}/11_object/{method}/mesh.ply",
-        silhouettes="results/{sequence}/11_object/{method}/silhouettes.zarr.zip",
-        masks=directory("results/{sequence}/11_object/{method}/masks"),
+        mesh="results/{sequence}/11_object/{method}{variant}/mesh.ply",
+        silhouettes="results/{sequence}/11_object/{method}{variant}/silhouettes.zarr.zip",
+        masks=directory("results/{sequence}/11_object/{method}{variant}/masks"),
     log:
-        "results/{sequence}/logs/object/{method}.log",
+        "results/{sequence}/logs/object/{method}{variant}.log",
     benchmark:
-        "results/{sequence}/benchmarks/object/{method}.tsv"
+        "results/{sequence}/benchmarks/object/{method}{variant}.tsv"
     wildcard_constraints:
         method="|".join(CUTS),
     conda:
@@ -93,7 +93,7 @@ rule cut_object:
         settings=settings_of("cut_object"),
         seed=config["seed"],
     message:
-        "Mesh the object of {wildcards.sequence} by {wildcards.method}."
+        "Mesh the object of {wildcards.sequence} by {wildcards.method}{wildcards.variant}."
     script:
         "../scripts/run_stage.py"
 
@@ -105,12 +105,12 @@ rule pixel_masks:
         poses="results/{sequence}/02_poses/poses.json",
         frames="results/{sequence}/01_frames/frames.zarr.zip",
     output:
-        silhouettes="results/{sequence}/11_object/{method}/silhouettes.zarr.zip",
-        masks=directory("results/{sequence}/11_object/{method}/masks"),
+        silhouettes="results/{sequence}/11_object/{method}{variant}/silhouettes.zarr.zip",
+        masks=directory("results/{sequence}/11_object/{method}{variant}/masks"),
     log:
-        "results/{sequence}/logs/object/{method}.log",
+        "results/{sequence}/logs/object/{method}{variant}.log",
     benchmark:
-        "results/{sequence}/benchmarks/object/{method}.tsv"
+        "results/{sequence}/benchmarks/object/{method}{variant}.tsv"
     wildcard_constraints:
         method="|".join(PIXEL_CUTS),
     conda:
@@ -123,6 +123,6 @@ rule pixel_masks:
         settings=settings_of("pixel_masks"),
         seed=config["seed"],
     message:
-        "Masks of {wildcards.sequence} by {wildcards.method}."
+        "Masks of {wildcards.sequence} by {wildcards.method}{wildcards.variant}."
     script:
         "../scripts/run_stage.py"

@@ -40,11 +40,11 @@ rule segment:
         depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
         consistency="results/{sequence}/07_fusion/consistency.zarr.zip",
     output:
-        labels="results/{sequence}/10_segment/{cut}.zarr.zip",
+        labels="results/{sequence}/10_segment/{cut}{variant}.zarr.zip",
     log:
-        "results/{sequence}/logs/segment/{cut}.log",
+        "results/{sequence}/logs/segment/{cut}{variant}.log",
     benchmark:
-        "results/{sequence}/benchmarks/segment/{cut}.tsv"
+        "results/{sequence}/benchmarks/segment/{cut}{variant}.tsv"
     wildcard_constraints:
         cut="joint|images",
     conda:
@@ -57,7 +57,7 @@ rule segment:
         settings=settings_of("segment"),
         seed=config["seed"],
     message:
-        "Segment {wildcards.sequence}: {wildcards.cut}."
+        "Segment {wildcards.sequence}: {wildcards.cut}{wildcards.variant}."
     script:
         "../scripts/run_stage.py"
 

@@ -9,8 +9,9 @@ import numpy as np
 
 from threedfs.evaluate.cylinder import CylinderResidual
 from threedfs.evaluate.depth_error import DepthPairs, measure_depth, pool_pairs
-from threedfs.evaluate.mesh_error import MeshError
+from threedfs.evaluate.mesh_error import MeshError, count_pieces, filled_share, is_closed
 from threedfs.evaluate.pose_error import PoseError
+from threedfs.types import Mesh
 
 _QUALITY = (
     ("reprojection_error", "reprojection_error", "px"),
@@ -114,6 +115,15 @@ def mesh_figures(error: MeshError) -> list[Figure]:
             for agreement in error.agreement
             for name in ("precision", "recall", "f_score")
         ),
+    ]
+
+
+def soundness_figures(mesh: Mesh) -> list[Figure]:
+    """Return whether a mesh is closed, of how many pieces it is, and what share of its bounding box it fills."""
+    return [
+        Figure("mesh_closed", float(is_closed(mesh)), "1"),
+        Figure("mesh_pieces", float(count_pieces(mesh)), "pieces"),
+        Figure("mesh_filled", filled_share(mesh), "1"),
     ]
 
 

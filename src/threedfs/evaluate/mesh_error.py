@@ -6,8 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
 
 from threedfs.evaluate.surface import SurfaceDistance, sample_surface
+from threedfs.object.extract import enclosed_volume
 from threedfs.types import Mesh
 
 
@@ -114,3 +117,18 @@ def is_closed(mesh: Mesh) -> bool:
     backward = np.sort(edges[:, 1] * count + edges[:, 0])
     unique = bool(np.all(np.diff(forward) > 0))
     return len(edges) > 0 and unique and bool(np.array_equal(forward, backward))
+
+
+def count_pieces(mesh: Mesh) -> int:
+    """Return the number of pieces that share no vertex."""
+    used, faces = np.unique(mesh.faces, return_inverse=True)
+    faces = faces.reshape(-1, 3)
+    ends = (np.concatenate([faces[:, 0], faces[:, 1]]), np.concatenate([faces[:, 1], faces[:, 2]]))
+    graph = coo_array((np.ones(len(ends[0]), bool), ends), shape=(len(used), len(used)))
+    return int(connected_components(graph, directed=False, return_labels=False))
+
+
+def filled_share(mesh: Mesh) -> float:
+    """Return the volume of a closed mesh as a share of its bounding box; negative if its faces look inwards."""
+    extent = np.ptp(mesh.vertices[np.unique(mesh.faces)], axis=0)
+    return enclosed_volume(mesh) / float(np.prod(extent))

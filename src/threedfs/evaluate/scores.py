@@ -77,6 +77,12 @@ class Scores:
         """Return the sequences of a data set."""
         return tuple(sequence for sequence, own in self.datasets.items() if own == dataset)
 
+    @cached_property
+    def variants(self) -> tuple[str, ...]:
+        """Names of the variants of methods that were measured or failed, each once: `METHOD@VARIANT` without METHOD."""
+        named = [method for _, method, _ in self._values] + [failure.item for failure in self.failures]
+        return tuple(dict.fromkeys(name.partition("@")[2] for name in named if "@" in name))
+
     def value(self, sequence: str, method: str, name: str) -> float | None:
         """Return a figure, or None if there is none.
 
@@ -89,9 +95,10 @@ class Scores:
     def excuse(self, sequence: str, method: str) -> str:
         """Say why a sequence lacks a figure of a method: it failed, it is not finished, or nothing (empty).
 
-        A job for another method is no reason; one for a keyframe is.
+        A job for another method or variant is no reason; one for a keyframe is.
         """
         for failure in self.failures:
-            if failure.sequence == sequence and (failure.item == method or failure.item not in self.methods):
+            own, _, variant = failure.item.partition("@")
+            if failure.sequence == sequence and (failure.item == method or not (variant or own in self.methods)):
                 return str(failure)
         return "" if sequence in self.measured else "not finished"

@@ -46,7 +46,7 @@ def pose_tables(scores: Scores, dataset: str) -> list[Table]:
 
 
 def mesh_tables(scores: Scores, dataset: str) -> list[Table]:
-    """Return distances and F-scores of the meshes, a table for each method."""
+    """Return distances, F-scores and soundness of the meshes, a table for each method."""
     agreements = [name for name in scores.names if name.startswith("mesh_f_score_")]
     tables = []
     for method in scores.methods:
@@ -55,6 +55,9 @@ def mesh_tables(scores: Scores, dataset: str) -> list[Table]:
             Column("completeness", "mesh_completeness", method=method),
             Column("Chamfer", "mesh_chamfer", method=method),
             *(Column(f"F-score at {name.rpartition('_')[2]} %", name, method=method) for name in agreements),
+            Column("closed", "mesh_closed", ".0f", method=method),
+            Column("pieces", "mesh_pieces", ".0f", method=method),
+            Column("filled", "mesh_filled", ".2f", method=method),
         ]
         tables += _measured(scores, dataset, columns, f"Meshes by {method}, {dataset}")
     return tables

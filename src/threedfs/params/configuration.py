@@ -25,6 +25,10 @@ METHODS = (
     "hard_maximum",
     "poisson",
 )
+JOINT_METHODS = ("gc_2d3d_pixel", "gc_2d3d_voxel", "gc_select", "sdf_2d3d_voxel")
+"""Methods that take the object from the joint segmentation: those that have variants."""
+VARIED_STAGES = ("segment", "cut_object")
+"""What a variant of them may change."""
 NAMES_OF_SEQUENCES = ("sequences", "cylinder_sequences")
 """Parameters that name sequences, and mean nothing for a single one."""
 SEQUENCE_NAME = r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$"
@@ -72,6 +76,15 @@ def configuration_schema() -> dict[str, Any]:
         },
         "skip_absent": {"type": "boolean"},
         "methods": {"type": "array", "minItems": 1, "uniqueItems": True, "items": {"enum": [*METHODS]}},
+        "variants": {
+            "type": ["object", "null"],
+            "propertyNames": {"pattern": SEQUENCE_NAME},
+            "additionalProperties": {
+                "type": "object",
+                "additionalProperties": False,
+                "properties": {stage: {"type": "object"} for stage in VARIED_STAGES},
+            },
+        },
         "seed": {"type": "integer", "minimum": 0},
         "store": {"type": "string", "minLength": 1},
     }
@@ -104,8 +117,24 @@ def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) ->
             where = f"sequences.{name}.settings.{stage}"
             if set(own) & set(NAMES_OF_SEQUENCES):
                 raise UserError(f"configuration, {where}: expected no names of sequences; give them under {stage}.")
-            _check_against(schema["properties"][stage], {**config[stage], **own}, where)
-            make_params(declared_stages()[stage], {**config[stage], **own})
+            _check_changes(config, schema, stage, own, where)
+    variants = config["variants"] or {}
+    if variants and not set(config["methods"]) & set(JOINT_METHODS):
+        raise UserError(
+            f"configuration, variants: expected a method that has variants, one of {', '.join(JOINT_METHODS)}, "
+            f"found {', '.join(config['methods'])}; add one to methods."
+        )
+    for name, stages in variants.items():
+        for stage, own in stages.items():
+            _check_changes(config, schema, stage, own, f"variants.{name}.{stage}")
+
+
+def _check_changes(
+    config: Mapping[str, Any], schema: Mapping[str, Any], stage: str, own: Mapping[str, Any], where: str
+) -> None:
+    changed = {**config[stage], **own}
+    _check_against(schema["properties"][stage], changed, where)
+    make_params(declared_stages()[stage], changed)
 
 
 def _check_against(schema: Mapping[str, Any], values: Mapping[str, Any], where: str = "") -> None:

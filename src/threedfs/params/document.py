@@ -45,6 +45,10 @@ skip_absent: false
 # sdf_2d3d_voxel, tsdf, soft_maximum, hard_maximum, poisson.
 methods: [sdf_2d3d_voxel, gc_2d3d_pixel]
 
+# The joint segmentation with other settings, beside the configured one: tables tell what each changes.
+#   no_table: {segment: {table: false}}
+variants: {}
+
 # Of every random choice.
 seed: 0
 
@@ -130,6 +134,9 @@ _KEYS = {
     "only masks), `gc_2d3d_voxel` (its voxels), `gc_select` (their largest piece), `sdf_2d3d_voxel` (the field inside "
     "that piece), `tsdf` (KinectFusion's weighted average), `soft_maximum` (Eq. 15 as printed), `hard_maximum` (Eq. "
     "13), `poisson` (the surface points alone)",
+    "variants.<name>": "the methods of the joint segmentation once more with settings of its own, "
+    "`{segment: {table: false}, cut_object: {...}}`; results are called `METHOD@NAME`, and a table tells how the IoU "
+    "changes. `ablation.yaml` has one for every term and option",
     "seed": "of every random choice",
     "store": "folder of finished work, and of the kernels compiled for it",
 }

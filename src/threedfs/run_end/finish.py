@@ -21,6 +21,7 @@ from threedfs.evaluate.tables import (
     pose_tables,
     unseen_tables,
 )
+from threedfs.evaluate.variant_tables import variant_tables
 from threedfs.io.atomic import atomic
 from threedfs.io.metrics import Metric, read_metrics, write_metrics
 from threedfs.params.schema import STAGES
@@ -28,6 +29,7 @@ from threedfs.run_end.logs import find_failures, read_actions
 
 TABLES = {
     "iou": overlap_tables,
+    "variants": variant_tables,
     "iou_unseen": unseen_tables,
     "depth_experiment": experiment_tables,
     "poses": pose_tables,

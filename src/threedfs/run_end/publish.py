@@ -14,6 +14,7 @@ BEGIN = "<!-- made by `make results` from here -->"
 END = "<!-- to here; own words go above or below -->"
 _TITLES = {
     "iou": "Foreground IoU",
+    "variants": "Terms and options of the joint segmentation, each off in turn",
     "iou_unseen": "Unseen views",
     "depth_experiment": "Depth from given poses: priors and measurements",
     "poses": "Poses",

@@ -31,7 +31,7 @@ from threedfs.segment.superpixels import Superpixels
 from threedfs.segment.table import match_table, picture_table
 from threedfs.types import Plane, View, VoxelGrid
 
-_SURE_LEVEL = float(__import__("os").environ.get("SURE", "-.5"))
+_SURE_LEVEL = -0.5
 """Field of voxels that hide the support surface for certain."""
 _SURFACE_LEVEL = 0.25
 """How far below zero the field may be at a voxel that a confirmed depth is linked with; above zero it may be empty."""

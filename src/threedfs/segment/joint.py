@@ -10,7 +10,7 @@ import numpy as np
 from threedfs.errors import UserError
 from threedfs.segment.alpha_expansion import expand
 from threedfs.segment.color_model import ColorModel, fit_color_model, lab_from_rgb, truncate
-from threedfs.segment.energy import BACKGROUND, EMPTY, OBJECT, LabelGraph, energy
+from threedfs.segment.energy import BACKGROUND, EMPTY, OBJECT, LabelGraph, energy, fold_given
 from threedfs.segment.evidence import ImageEvidence, VoxelEvidence
 from threedfs.segment.outline import draw_voxels
 from threedfs.segment.pairwise import voxel_pairs
@@ -89,11 +89,14 @@ def segment_jointly(
     Raises
     ------
     UserError
-        If the trimap leaves nothing to segment, or the object loses all its voxels.
+        If the trimap leaves nothing to segment, no superpixel is linked with a voxel, or the object loses all its
+        voxels.
     ArithmeticError
         If a move raises the energy.
     """
-    nodes = _Nodes(images, volume)
+    if volume is not None:
+        _check_links(images, note)
+    nodes = _Nodes(images, volume, rule.voxel_pair_weight)
     labels, model, seed = nodes.first_labels(), None, int(rng.integers(2**31))
     silhouettes, carved = _Average(), _Average()
     energies, swaps = [], []
@@ -124,8 +127,8 @@ def segment_jointly(
             swaps.append(int((moved != labels).sum()))
             energies.append(after)
             labels, now, swapped = moved, after, swapped + swaps[-1]
-        note(f"iteration {iteration + 1}: energy {now:.0f}, {swapped} labels changed of {int(graph.is_open.sum())}")
-        if swapped < max(rule.stop_swaps, rule.stop_share * graph.is_open.sum()):
+        note(f"iteration {iteration + 1}: energy {now:.0f}, {swapped} labels changed of {len(labels)}")
+        if swapped < max(rule.stop_swaps, rule.stop_share * len(labels)):
             break
     return Cut(
         nodes.split(labels),
@@ -134,6 +137,22 @@ def segment_jointly(
         np.array(swaps, np.int64),
         model,
     )
+
+
+def _check_links(images: Mapping[str, ImageEvidence], note: Callable[[str], None]) -> None:
+    """Name the keyframes that no link ties to the voxels; refuse if that is all of them."""
+    alone = [name for name, evidence in images.items() if len(evidence.link_pairs) == 0]
+    if len(alone) == len(images):
+        raise UserError(
+            f"segment: expected links between superpixels and voxels, found none in any of {len(images)} keyframes; "
+            "none of their depth is confirmed by other views, or no semi-dense point lies on the object: look at the "
+            "depth maps, set segment.links to the other choice, or use the method fused_sdf."
+        )
+    if alone:
+        note(
+            f"no link with voxels in {', '.join(alone)}: there the voxels' silhouette alone tells what other views "
+            "know; their depth is confirmed nowhere on the object, as where a view is blurred or far from the others"
+        )
 
 
 class _Average:
@@ -152,77 +171,92 @@ class _Average:
 
 
 class _Nodes:
-    """Numbering of all nodes: the superpixels of each image in turn, then the voxels in the order of the grid."""
+    """Numbering of all nodes: the superpixels of each image in turn, then the voxels in the order of the grid.
 
-    def __init__(self, images: Mapping[str, ImageEvidence], volume: VoxelEvidence | None) -> None:
+    Labels are of the open nodes only; what the others have is given.
+    """
+
+    def __init__(
+        self, images: Mapping[str, ImageEvidence], volume: VoxelEvidence | None, voxel_pair_weight: float
+    ) -> None:
         self._images, self._volume = images, volume
         counts = [evidence.superpixels.count for evidence in images.values()]
-        self._starts = np.concatenate([[0], np.cumsum(counts)])
-        self._superpixels = int(self._starts[-1])
-        is_open = [evidence.is_open for evidence in images.values()]
-        if not any(part.any() for part in is_open):
+        starts = np.concatenate([[0], np.cumsum(counts)])
+        self._starts, self._superpixels = starts, int(starts[-1])
+        is_open, first = (
+            np.concatenate([getattr(evidence, name) for evidence in images.values()]) for name in ("is_open", "first")
+        )
+        if not is_open.any():
             raise UserError(
                 "segment: expected superpixels between the outer and the inner estimate of the object, found none; "
                 "raise segment.outer_level or segment.outer_margin, or lower segment.inner_level."
             )
-        self._pairs = [e.superpixels.pairs + s for e, s in zip(images.values(), self._starts, strict=False)]
-        self._weights = [e.pair_weight for e in images.values()]
-        self._never_empty = np.empty(0, np.int64)
+        self._open_superpixels = np.flatnonzero(is_open)
+        pairs = [e.superpixels.pairs + s for e, s in zip(images.values(), starts, strict=False)]
+        weights = [e.pair_weight for e in images.values()]
+        kinds, linked = 2, np.empty(0, np.int64)
+        if volume is not None:
+            kinds, linked = 3, np.unique(np.concatenate([e.link_pairs[:, 1] for e in images.values()]))
+            is_open = np.concatenate([is_open, volume.is_open.reshape(-1)])
+            first = np.concatenate([first, volume.first.reshape(-1)])
+            pairs.append(voxel_pairs(volume.is_open) + self._superpixels)
+            weights.append(np.full(len(pairs[-1]), voxel_pair_weight))
+            shifts = [np.array([start, self._superpixels]) for start in starts[:-1]]
+            pairs += [e.link_pairs + shift for e, shift in zip(images.values(), shifts, strict=True)]
+            weights += [e.link_weight for e in images.values()]
+        self._open, self._given = np.flatnonzero(is_open), first
+        self._never_empty = np.searchsorted(self._open, linked + self._superpixels)
+        self._folded = fold_given(
+            np.concatenate(pairs, dtype=np.int32), np.concatenate(weights, dtype=np.float32), first, is_open, kinds
+        )
         self.open_centres = np.empty((0, 3))
         if volume is not None:
-            is_open.append(volume.is_open.reshape(-1))
-            self._open_voxels = np.flatnonzero(is_open[-1])
-            place = np.stack(np.unravel_index(self._open_voxels, volume.grid.shape), axis=1)
+            voxels = self._open[len(self._open_superpixels) :] - self._superpixels
+            place = np.stack(np.unravel_index(voxels, volume.grid.shape), axis=1)
             self.open_centres = volume.grid.origin + volume.grid.spacing * place
-            self._pairs.append(voxel_pairs(volume.is_open) + self._superpixels)
-            starts = [(start, self._superpixels) for start in self._starts[:-1]]
-            links = [e.link_pairs + np.array(start) for e, start in zip(images.values(), starts, strict=True)]
-            self._pairs.append(np.concatenate(links).astype(np.int32))
-            self._links = np.concatenate([e.link_weight for e in images.values()])
-            self._never_empty = np.unique(self._pairs[-1][:, 1])
-        self._is_open = np.concatenate(is_open)
+            self._sdf, self._normalised = (a.reshape(-1)[voxels] for a in (volume.sdf, volume.normalised))
 
     def first_labels(self) -> np.ndarray:
-        labels = [evidence.first for evidence in self._images.values()]
-        return np.concatenate(labels if self._volume is None else [*labels, self._volume.first.reshape(-1)])
+        return self._given[self._open]
 
     def split(self, labels: np.ndarray) -> dict[str, np.ndarray]:
-        """Return the superpixels' labels by keyframe."""
-        parts = np.split(labels[: self._superpixels], self._starts[1:-1])
-        return dict(zip(self._images, parts, strict=True))
+        """Return the labels of all superpixels by keyframe."""
+        found = self._given[: self._superpixels].copy()
+        found[self._open_superpixels] = labels[: len(self._open_superpixels)]
+        return dict(zip(self._images, np.split(found, self._starts[1:-1]), strict=True))
 
     def voxels(self, labels: np.ndarray) -> np.ndarray:
-        return labels[self._superpixels :].reshape(self._volume.grid.shape)
+        """Return the labels of all voxels."""
+        found = self._given[self._superpixels :].copy()
+        count = len(self._open_superpixels)
+        found[self._open[count:] - self._superpixels] = labels[count:]
+        return found.reshape(self._volume.grid.shape)
 
     def connect(
         self, model: ColorModel, silhouettes: np.ndarray | None, carved: np.ndarray | None, rule: CutRule
     ) -> LabelGraph:
         """Return the graph of Eq. 19 under the present colours, silhouettes and carving."""
-        unary = np.zeros((len(self._is_open), 3), np.float32)
-        images = unary[: self._superpixels]
-        images[:, EMPTY] = np.inf
-        for start, evidence in zip(self._starts, self._images.values(), strict=False):
+        costs = []
+        for evidence in self._images.values():
             owner, lab, table = evidence.band
-            count = evidence.superpixels.count
             chance = model.posterior(lab, table)
-            own = slice(start, start + count)
-            cost = [mean_by(truncate(p, rule.color_cap), owner, count) for p in (1 - chance, chance)]
-            images[own, :2] = rule.color_weight * np.stack(cost, axis=1)
-            images[own, OBJECT] += rule.roi_weight * evidence.outside
+            cost = [
+                mean_by(truncate(p, rule.color_cap), owner, evidence.superpixels.count) for p in (1 - chance, chance)
+            ]
+            costs.append(rule.color_weight * np.stack(cost, axis=1))
+            costs[-1][:, OBJECT] += rule.roi_weight * evidence.outside
+        images = np.concatenate(costs)[self._open_superpixels]
         if silhouettes is not None:
-            images[:, :2] += rule.silhouette_weight * silhouette_unary(silhouettes)
-        pairs, weights = list(self._pairs), list(self._weights)
-        if self._volume is not None:
-            sdf, normalised = (
-                array.reshape(-1)[self._open_voxels] for array in (self._volume.sdf, self._volume.normalised)
-            )
-            cost = rule.sdf_weight * sdf_unary(sdf) + rule.scene_weight * scene_unary(normalised)
-            cost[:, OBJECT] += rule.carve_weight * carved
-            unary[self._superpixels + self._open_voxels] = cost
-            unary[self._never_empty, EMPTY] = np.inf
-            weights.append(np.full(len(pairs[-2]), rule.voxel_pair_weight, np.float32))
-            weights.append(self._links)
-        return LabelGraph(unary, np.concatenate(pairs), np.concatenate(weights).astype(np.float32), self._is_open)
+            images += rule.silhouette_weight * silhouette_unary(silhouettes)[self._open_superpixels]
+        if self._volume is None:
+            return self._folded.with_costs(images)
+        unary = np.empty((len(self._open), 3), np.float32)
+        unary[: len(images), :2], unary[: len(images), EMPTY] = images, np.inf
+        voxels = unary[len(images) :]
+        voxels[:] = rule.sdf_weight * sdf_unary(self._sdf) + rule.scene_weight * scene_unary(self._normalised)
+        voxels[:, OBJECT] += rule.carve_weight * carved
+        unary[self._never_empty, EMPTY] = np.inf
+        return self._folded.with_costs(unary)
 
 
 def _learn_colors(images, labels, rule, before, rng, seed):

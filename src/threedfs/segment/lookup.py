@@ -3,22 +3,37 @@
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 
-from threedfs.geometry.projection import project
 from threedfs.types import View
 
 
 def find_pixels(view: View, points: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return the pixels nearest to the projections of world points (N, 3).
+    """Return the pixels nearest to the projections of world points (N, 3) float64.
 
     Returns
     -------
-    row, column : (M,) int64
+    row, column : (M,) int32
         Of the points that the image shows.
     kept : (N,) bool
         Which points those are.
     """
-    pixels, _ = project(view, points)
-    column, row = (np.rint(np.nan_to_num(pixels[:, axis], nan=-1)).astype(np.int64) for axis in (0, 1))
-    kept = (column >= 0) & (column < view.camera.width) & (row >= 0) & (row < view.camera.height)
+    row, column = _find(np.ascontiguousarray(points), view.px_from_world, view.camera.height, view.camera.width)
+    kept = row >= 0
     return row[kept], column[kept], kept
+
+
+@njit(cache=True)
+def _find(points, px_from_world, height, width):
+    """Return row and column (N,) int32 of the nearest pixels, -1 outside the image and behind the camera."""
+    row, column = np.full(len(points), -1, np.int32), np.full(len(points), -1, np.int32)
+    m = px_from_world
+    for n in range(len(points)):
+        x, y, z = points[n]
+        depth = m[2, 0] * x + m[2, 1] * y + m[2, 2] * z + m[2, 3]
+        if depth > 0:
+            u = np.rint((m[0, 0] * x + m[0, 1] * y + m[0, 2] * z + m[0, 3]) / depth)
+            v = np.rint((m[1, 0] * x + m[1, 1] * y + m[1, 2] * z + m[1, 3]) / depth)
+            if 0 <= u < width and 0 <= v < height:
+                row[n], column[n] = v, u
+    return row, column

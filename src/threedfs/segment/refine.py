@@ -8,7 +8,7 @@ import numpy as np
 
 from threedfs.segment.alpha_expansion import expand
 from threedfs.segment.color_model import ColorModel, lab_image, truncate
-from threedfs.segment.energy import BACKGROUND, OBJECT, LabelGraph
+from threedfs.segment.energy import BACKGROUND, OBJECT, fold_given
 from threedfs.segment.evidence import ImageEvidence
 from threedfs.segment.unaries import silhouette_unary, soften_silhouette
 
@@ -50,19 +50,17 @@ def refine_mask(
     inside = np.append(evidence.is_open, False)[evidence.superpixels.index]
     _, lab, table = evidence.band
     chance = colors.posterior(lab, table)
-    unary = np.zeros((start.size, 2), np.float32)
-    flat = np.flatnonzero(inside)
-    unary[flat, OBJECT] = rule.color_weight * truncate(chance, rule.color_cap)
-    unary[flat, BACKGROUND] = rule.color_weight * truncate(1 - chance, rule.color_cap)
-    unary[flat, 1 - start.reshape(-1)[flat].astype(int)] += rule.label_weight
+    unary = rule.color_weight * np.stack([truncate(p, rule.color_cap) for p in (1 - chance, chance)], axis=1)
+    own = start[inside].astype(np.uint8)
+    unary[np.arange(len(own)), 1 - own] += rule.label_weight
     if silhouette is not None:
         share = soften_silhouette(silhouette, evidence.silhouette_reach)[inside]
-        unary[flat] += rule.silhouette_weight * silhouette_unary(share)
+        unary += rule.silhouette_weight * silhouette_unary(share)
     pairs, weight = _weigh_neighbours(lab_image(evidence.image), inside, rule)
-    graph = LabelGraph(unary, pairs, weight, inside.reshape(-1))
-    first = start.reshape(-1).astype(np.uint8)
-    grown = expand(graph, first, OBJECT)
-    return expand(graph, grown, BACKGROUND).reshape(start.shape) == OBJECT
+    graph = fold_given(pairs, weight, start.reshape(-1).astype(np.uint8), inside.reshape(-1), 2).with_costs(unary)
+    mask = start.copy()
+    mask[inside] = expand(graph, expand(graph, own, OBJECT), BACKGROUND) == OBJECT
+    return mask
 
 
 def _weigh_neighbours(lab, inside, rule):

@@ -12,7 +12,7 @@ from threedfs.geometry.grid import voxel_centres
 from threedfs.geometry.projection import project
 from threedfs.segment.alpha_expansion import expand
 from threedfs.segment.color_model import fit_color_model, lab_image
-from threedfs.segment.energy import BACKGROUND, EMPTY, OBJECT, LabelGraph
+from threedfs.segment.energy import BACKGROUND, EMPTY, OBJECT, fold_given
 from threedfs.segment.lookup import find_pixels
 from threedfs.segment.outline import draw_voxels
 from threedfs.segment.pairwise import voxel_pairs
@@ -90,6 +90,8 @@ def cut_volume(
     pairs = voxel_pairs(is_open)
     share = np.exp(-votes.reshape(-1) / rule.vote_scale)
     weight = rule.pair_weight * np.minimum(share[pairs[:, 0]], share[pairs[:, 1]])
+    below = np.full(is_open.size, BACKGROUND, np.uint8)
+    graph = fold_given(pairs, weight.astype(np.float32), below, is_open.reshape(-1), 2)
     masks = {name: _around(view, fixation, rule.fixation_radius) for name, view in views.items()}
     model, before, seed = None, None, int(rng.integers(2**31))
     for iteration in range(rule.iterations):
@@ -97,10 +99,9 @@ def cut_volume(
         around = np.concatenate([lab[name][~masks[name]] for name in views])
         drawn = [pixels[rng.permutation(len(pixels))[: rule.color_pixels]] for pixels in (inside, around)]
         model = fit_color_model(drawn[0], drawn[1], rule.components, model, seed)
-        unary = np.zeros((is_open.size, 2), np.float32)
-        unary[np.flatnonzero(is_open)] = _mean_cost(centres, views, lab, model, rule.least_posterior)
-        graph = LabelGraph(unary, pairs, weight.astype(np.float32), is_open.reshape(-1))
-        labels = expand(graph, np.zeros(is_open.size, np.uint8), OBJECT).reshape(grid.shape) == OBJECT
+        costs = graph.with_costs(_mean_cost(centres, views, lab, model, rule.least_posterior))
+        labels = np.zeros(grid.shape, bool)
+        labels[is_open] = expand(costs, np.full(len(centres), BACKGROUND, np.uint8), OBJECT) == OBJECT
         if not labels.any():
             raise UserError(
                 "volumetric_cut: expected voxels of the object's colours, found none; what the cameras look at has "

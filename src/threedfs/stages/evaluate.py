@@ -19,9 +19,10 @@ from threedfs.evaluate.figures import (
     mesh_figures,
     pose_figures,
     reconstruction_figures,
+    soundness_figures,
 )
 from threedfs.evaluate.masks import check_mask_size, intersection_over_union
-from threedfs.evaluate.mesh_error import is_closed, measure_mesh
+from threedfs.evaluate.mesh_error import measure_mesh
 from threedfs.evaluate.pose_error import align_poses, measure_poses
 from threedfs.evaluate.rendering import MeshRenderer, filmed_pixels, image_points, sample_nearest
 from threedfs.frames.masks import find_masks
@@ -111,7 +112,7 @@ def run(
     if depth_truth is not None:
         figures += _score_depth_by_images(depth_truth, depth_scale, depth_camera, maps, truth, selected, solved, store)
     if surface is not None:
-        figures.append(Figure("mesh_closed", float(is_closed(surface)), "1"))
+        figures += soundness_figures(surface)
     if surface is not None and sequence in params.cylinder_sequences:
         figures += cylinder_figures(measure_cylinder(surface, params.surface_samples, generator))
     write_metrics(
