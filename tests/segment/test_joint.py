@@ -148,7 +148,7 @@ def test_an_object_that_loses_all_its_voxels_is_refused():
         segment(scene, repelled)
 
 
-def test_keyframes_without_links_are_named_and_refused_if_they_are_all():
+def test_keyframes_without_links_are_named():
     scene, _ = make_scene(views=4)
     gather, rule = rules(DEFAULTS)
     rng = np.random.default_rng(0)
@@ -158,10 +158,10 @@ def test_keyframes_without_links_are_named_and_refused_if_they_are_all():
     first = next(iter(images))
     notes = []
     segment_jointly({**images, first: bare[first]}, volume, rule, rng, notes.append)
-    assert notes[0].startswith(f"no link with voxels in {first}:")
-    with pytest.raises(UserError, match="found none in any of 4 keyframes"):
-        segment_jointly(bare, volume, rule, rng)
-    assert segment_jointly(bare, None, rule, rng).voxels is None  # images alone need none
+    assert notes[0].startswith(f"1 of 4 keyframes have no link with voxels, {first}: ")
+    segment_jointly(images, volume, rule, rng, notes.append)
+    segment_jointly(bare, None, rule, rng, notes.append)  # images alone need none
+    assert not any("no link" in note for note in notes[1:])
 
 
 def test_masks_carve_and_fill_a_field():

@@ -89,13 +89,12 @@ def segment_jointly(
     Raises
     ------
     UserError
-        If the trimap leaves nothing to segment, no superpixel is linked with a voxel, or the object loses all its
-        voxels.
+        If the trimap leaves nothing to segment, or the object loses all its voxels.
     ArithmeticError
         If a move raises the energy.
     """
     if volume is not None:
-        _check_links(images, note)
+        _name_unlinked(images, note)
     nodes = _Nodes(images, volume, rule.voxel_pair_weight)
     labels, model, seed = nodes.first_labels(), None, int(rng.integers(2**31))
     silhouettes, carved = _Average(), _Average()
@@ -139,19 +138,14 @@ def segment_jointly(
     )
 
 
-def _check_links(images: Mapping[str, ImageEvidence], note: Callable[[str], None]) -> None:
-    """Name the keyframes that no link ties to the voxels; refuse if that is all of them."""
+def _name_unlinked(images: Mapping[str, ImageEvidence], note: Callable[[str], None]) -> None:
+    """Name the keyframes that no link ties to the voxels; what others see reaches them by the voxels' silhouette."""
     alone = [name for name, evidence in images.items() if len(evidence.link_pairs) == 0]
-    if len(alone) == len(images):
-        raise UserError(
-            f"segment: expected links between superpixels and voxels, found none in any of {len(images)} keyframes; "
-            "none of their depth is confirmed by other views, or no semi-dense point lies on the object: look at the "
-            "depth maps, set segment.links to the other choice, or use the method fused_sdf."
-        )
     if alone:
         note(
-            f"no link with voxels in {', '.join(alone)}: there the voxels' silhouette alone tells what other views "
-            "know; their depth is confirmed nowhere on the object, as where a view is blurred or far from the others"
+            f"{len(alone)} of {len(images)} keyframes have no link with voxels, {', '.join(alone)}: their depth meets "
+            "the fused surface nowhere, as in a blurred view, one far from others, or where much of the object is lost; "
+            "only the voxels' silhouette tells them what others see"
         )
 
 
