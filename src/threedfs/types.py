@@ -85,6 +85,25 @@ class Keyframe:
 
 
 @dataclass(frozen=True)
+class Features:
+    """Keypoints of one frame.
+
+    Attributes
+    ----------
+    pixels : (N, 2) float64
+        Where they are in the raw frame, integer pixel centres.
+    descriptors : (N, 128) uint8
+        SIFT descriptors, root-normalised to length 512.
+    colors : (N, 3) uint8
+        RGB at the keypoints.
+    """
+
+    pixels: np.ndarray
+    descriptors: np.ndarray
+    colors: np.ndarray
+
+
+@dataclass(frozen=True)
 class SparsePoints:
     """Triangulated scene points with visibility.
 

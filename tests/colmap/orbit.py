@@ -6,10 +6,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from threedfs.colmap.features import Features
 from threedfs.geometry.lens import Lens
 from threedfs.geometry.rigid import look_at
-from threedfs.types import Camera
+from threedfs.types import Camera, Features
 
 LENS = Lens(Camera(640, 480, 600.0, 600.0, 319.5, 239.5), k1=0.04)
 

@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from orbit import make_orbit, true_matches
 
-from threedfs.colmap.features import Features
 from threedfs.colmap.verification import Verified
 from threedfs.errors import UserError
 from threedfs.poses import gates
 from threedfs.poses.pairs import sequential_pairs
+from threedfs.types import Features
 
 GOOD = {"reprojection_error": 0.6, "track_length": 5.0, "triangulation_angle": 12.0}
 BOUNDS = {"max_error": 2.0, "min_track_length": 2.5, "min_angle": 2.5}

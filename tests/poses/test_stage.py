@@ -17,10 +17,12 @@ from threedfs.io.frames import Frame, write_frames
 from threedfs.io.points import read_points
 from threedfs.io.poses import read_poses
 from threedfs.job import Job
+from threedfs.params.features import FeaturesParams
 from threedfs.params.poses import PosesParams
 from threedfs.poses.normalise import observed_depths
 from threedfs.progress import Progress
 from threedfs.stages import poses as stage
+from threedfs.stages.features import run as find_features
 
 FRAMES = 8
 
@@ -44,17 +46,24 @@ def store_frames(path, pictures, *, ordered=True):
     return path
 
 
+def make_job(threads):
+    return Job(Progress("poses", io.StringIO()), {"made": "in a test"}, threads)
+
+
 def run(folder, pictures, *, threads=1, cameras=None, calibration=None, ordered=True, **settings):
     folder.mkdir(exist_ok=True)
+    frames, job = store_frames(folder / "frames.zarr.zip", pictures, ordered=ordered), make_job(threads)
+    find_features(frames=frames, features=folder / "features.zarr.zip", params=FeaturesParams(), job=job)
     stage.run(
-        frames=store_frames(folder / "frames.zarr.zip", pictures, ordered=ordered),
+        frames=frames,
+        features=folder / "features.zarr.zip",
         cameras=cameras,
         calibration=calibration,
         poses=folder / "poses.json",
         points=folder / "points.zarr.zip",
         intrinsics=None,
         params=PosesParams(**settings),
-        job=Job(Progress("poses", io.StringIO()), {"made": "in a test"}, threads),
+        job=job,
     )
     return read_poses(folder / "poses.json"), read_points(folder / "points.zarr.zip")
 
@@ -102,7 +111,7 @@ def test_the_scene_has_mean_inverse_depth_one(estimated):
 
 def test_bytes_do_not_depend_on_threads(tmp_path, estimated_folder, estimated, pictures):
     run(tmp_path / "two", pictures, threads=2)
-    for name in ("poses.json", "points.zarr.zip"):
+    for name in ("features.zarr.zip", "poses.json", "points.zarr.zip"):
         assert (estimated_folder / name).read_bytes() == (tmp_path / "two" / name).read_bytes()
 
 

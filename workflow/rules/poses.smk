@@ -1,9 +1,34 @@
-# 02: camera of every frame, sparse points, undistorted frames.
+# 02: keypoints, camera of every frame, sparse points, undistorted frames.
+
+
+rule features:
+    input:
+        frames="results/{sequence}/01_frames/frames.zarr.zip",
+    output:
+        features="results/{sequence}/02_poses/features.zarr.zip",
+    log:
+        "results/{sequence}/logs/features.log",
+    benchmark:
+        "results/{sequence}/benchmarks/features.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: THREADS
+    resources:
+        mem_mb=2000,
+    params:
+        code=code_of("features"),
+        settings=settings_of("features"),
+        seed=config["seed"],
+    message:
+        "Find the keypoints of {wildcards.sequence}."
+    script:
+        "../scripts/run_stage.py"
 
 
 rule poses:
     input:
         frames="results/{sequence}/01_frames/frames.zarr.zip",
+        features="results/{sequence}/02_poses/features.zarr.zip",
         cameras=given("cameras"),
         calibration=branch(
             lambda wildcards: SEQUENCES[wildcards.sequence]["calibration"] is not None,

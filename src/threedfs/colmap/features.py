@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
@@ -12,25 +11,7 @@ import numpy as np
 import pycolmap
 
 from threedfs.colmap.lens import px_from_colmap
-
-
-@dataclass(frozen=True)
-class Features:
-    """Keypoints of one frame.
-
-    Attributes
-    ----------
-    pixels : (N, 2) float64
-        Where they are in the raw frame, integer pixel centres.
-    descriptors : (N, 128) uint8
-        SIFT descriptors, root-normalised to length 512.
-    colors : (N, 3) uint8
-        RGB at the keypoints.
-    """
-
-    pixels: np.ndarray
-    descriptors: np.ndarray
-    colors: np.ndarray
+from threedfs.types import Features
 
 
 def extract_features(

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pycolmap
 
-from threedfs.colmap.features import Features
 from threedfs.colmap.lens import colmap_from_px
+from threedfs.types import Features
 
 Matches = Mapping[tuple[int, int], np.ndarray]
 """(M, 2) uint32 keypoint indices by pair of frame numbers (first < second)."""

@@ -9,11 +9,11 @@ from tempfile import TemporaryDirectory
 
 import pycolmap
 
-from threedfs.colmap.features import Features
 from threedfs.colmap.graph import Matches, write_graph
 from threedfs.colmap.lens import guess_colmap_camera, make_colmap_camera, read_colmap_camera
 from threedfs.colmap.model import Model, read_model
 from threedfs.geometry.lens import Lens
+from threedfs.types import Features
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 import pycolmap
 
-from threedfs.colmap.features import Features
 from threedfs.colmap.graph import frame_number
-from threedfs.types import SparsePoints
+from threedfs.types import Features, SparsePoints
 
 
 @dataclass(frozen=True)

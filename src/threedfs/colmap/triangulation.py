@@ -9,11 +9,11 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pycolmap
 
-from threedfs.colmap.features import Features
 from threedfs.colmap.graph import Matches, image_id, write_graph
 from threedfs.colmap.lens import make_colmap_camera
 from threedfs.colmap.model import Model, read_model
 from threedfs.geometry.lens import Lens
+from threedfs.types import Features
 
 
 def triangulate(

@@ -10,10 +10,10 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pycolmap
 
-from threedfs.colmap.features import Features
 from threedfs.colmap.graph import Matches, frame_number, write_graph
 from threedfs.colmap.lens import guess_colmap_camera, make_colmap_camera
 from threedfs.geometry.lens import Lens
+from threedfs.types import Features
 
 _FLAT = {
     kind.value

@@ -11,14 +11,6 @@ from threedfs.params.field import parameter
 class PosesParams:
     """What a user may set about camera poses and sparse points."""
 
-    max_features: int = parameter(2048, "most SIFT keypoints of a frame, the largest kept", minimum=100)
-    min_contrast: float = parameter(
-        0.00667,
-        "least contrast of a keypoint; smaller finds more on faint texture",
-        unit="grey range",
-        exclusive_minimum=0,
-    )
-    min_features: int = parameter(50, "least median number of keypoints of a frame", minimum=8)
     overlap: int = parameter(8, "a frame of a video is matched with so many following ones", minimum=1)
     gap_overlap: int = parameter(24, "the same where some frames got no pose, to match over blurred ones", minimum=1)
     max_ratio: float = parameter(

@@ -15,6 +15,7 @@ STAGES = (
     "render",
     "calibrate",
     "frames",
+    "features",
     "poses",
     "undistort",
     "keyframes",

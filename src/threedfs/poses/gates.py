@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from threedfs.colmap.features import Features
 from threedfs.colmap.mapping import Mapped
 from threedfs.colmap.verification import Verified
 from threedfs.errors import UserError
+from threedfs.types import Features
 
 
 def check_features(features: Sequence[Features], least: int) -> float:
@@ -23,7 +23,7 @@ def check_features(features: Sequence[Features], least: int) -> float:
     median = float(np.median([len(frame.pixels) for frame in features]))
     if median < least:
         raise UserError(
-            f"poses: expected at least {least} keypoints in half of the frames, got a median of {median:.0f}: the "
+            f"features: expected at least {least} keypoints in half of the frames, got a median of {median:.0f}: the "
             "frames are blank, dark or blurred; film in better light, or put something with texture beside the object."
         )
     return median

@@ -7,13 +7,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from threedfs.colmap.features import Features
 from threedfs.colmap.graph import Matches
 from threedfs.colmap.verification import Verified, verify_matches
 from threedfs.geometry.lens import Lens
 from threedfs.poses.epipolar import agreeing_matches
 from threedfs.poses.matching import match_pairs
 from threedfs.poses.pairs import Pairs
+from threedfs.types import Features
 
 
 @dataclass(frozen=True)

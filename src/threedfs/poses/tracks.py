@@ -27,9 +27,8 @@ def _widest_angles(rays, starts):
     for point in range(len(angles)):
         least = 1.0
         for i in range(starts[point], starts[point + 1]):
-            for j in range(i):
-                if j >= starts[point]:
-                    least = min(least, rays[i, 0] * rays[j, 0] + rays[i, 1] * rays[j, 1] + rays[i, 2] * rays[j, 2])
+            for j in range(starts[point], i):
+                least = min(least, rays[i, 0] * rays[j, 0] + rays[i, 1] * rays[j, 1] + rays[i, 2] * rays[j, 2])
         angles[point] = np.arccos(max(least, -1.0))
     return angles
 

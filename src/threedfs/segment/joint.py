@@ -144,7 +144,7 @@ def _name_unlinked(images: Mapping[str, ImageEvidence], note: Callable[[str], No
     if alone:
         note(
             f"{len(alone)} of {len(images)} keyframes have no link with voxels, {', '.join(alone)}: their depth meets "
-            "the fused surface nowhere, as in a blurred view, one far from others, or where much of the object is lost; "
+            "the fused surface nowhere, as in a blurred view, one far from others, or where much of it is lost; "
             "only the voxels' silhouette tells them what others see"
         )
 

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from threedfs.colmap.features import extract_features
 from threedfs.colmap.triangulation import triangulate
 from threedfs.geometry.lens import Lens
 from threedfs.io.calibration import read_calibration
+from threedfs.io.features import read_features
 from threedfs.io.frames import FrameStore, read_frames
 from threedfs.io.given_cameras import GivenCamera, read_given_cameras
 from threedfs.io.points import write_points
@@ -23,7 +23,6 @@ from threedfs.poses.continuity import measure_path
 from threedfs.poses.gates import (
     check_agreement,
     check_continuity,
-    check_features,
     check_points,
     check_quality,
     check_registered,
@@ -51,6 +50,7 @@ class Solved:
 def run(
     *,
     frames: Path,
+    features: Path,
     cameras: Path | None,
     calibration: Path | None,
     poses: Path,
@@ -59,7 +59,7 @@ def run(
     params: PosesParams,
     job: Job,
 ) -> None:
-    """Read the frames and, if given, cameras or a calibration; write poses.json and points.zarr.zip.
+    """Read frames, keypoints and, if given, cameras or a calibration; write poses.json and points.zarr.zip.
 
     Differs from the paper: structure from motion with loop closure in place of LSD-SLAM (3.1).
 
@@ -69,24 +69,24 @@ def run(
         If the frames give no reconstruction that can be trusted, or given cameras do not fit them.
     """
     store = read_frames(frames)
-    features = extract_features(
-        (store.image(name) for name in job.progress.track(store.names, "frames read")),
-        max_features=params.max_features,
-        min_contrast=params.min_contrast,
-        threads=job.threads,
-    )
-    median_features = check_features(features, params.min_features)
-    job.progress.note(f"median of {median_features:.0f} keypoints a frame")
+    found = read_features(features)
     rule = MatchRule(
         params.max_ratio, params.max_descriptor_angle, params.min_matches, params.max_match_error, params.focal_factor
     )
-    matcher = PairMatcher(FrameFeatures(features, store.shape, store.ordered), rule, job.seed, job.threads)
+    matcher = PairMatcher(FrameFeatures(found, store.shape, store.ordered), rule, job.seed, job.threads)
     if cameras is not None:
         given = read_given_cameras(cameras, intrinsics)
         solved = _triangulate_given(store, matcher, given, params, job)
     else:
         solved = _estimate(store, matcher, calibration, params, job)
-    _write(store, solved, {"features": median_features, **solved.quality}, poses, points, job)
+    _write(
+        store,
+        solved,
+        {"features": float(np.median([len(frame.pixels) for frame in found])), **solved.quality},
+        poses,
+        points,
+        job,
+    )
 
 
 def _triangulate_given(

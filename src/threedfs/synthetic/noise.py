@@ -30,6 +30,8 @@ def _value_noise(x: float, y: float, z: float, seed: int) -> float:
         wz = c if dz else 1 - c
         for dy in range(2):
             wy = b if dy else 1 - b
+            if wz * wy == 0:
+                continue  # as half of the lattice points are to a point of the table's top
             low = _hash(p, q + dy, r + dz, seed)
             high = _hash(p + 1, q + dy, r + dz, seed)
             total += wz * wy * (low + a * (high - low))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
 from threedfs.synthetic.solid import Material
 
@@ -69,15 +70,24 @@ def enter_box(
     axes : (2, N) int64
         The axis of the face met at entry and at leaving.
     """
-    entry, leave = np.full(len(directions), -np.inf), np.full(len(directions), np.inf)
-    axes = np.zeros((2, len(directions)), np.int64)
-    for axis in range(3):
-        with np.errstate(divide="ignore", invalid="ignore"):
-            to_low = (low[axis] - origins[:, axis]) / directions[:, axis]
-            to_high = (high[axis] - origins[:, axis]) / directions[:, axis]
-        # A ray along the face gives 0 / 0 there; fmin and fmax leave that bound out.
-        near, far = np.fmin(to_low, to_high), np.fmax(to_low, to_high)
-        axes[0][near > entry] = axis
-        axes[1][far < leave] = axis
-        entry, leave = np.fmax(entry, near), np.fmin(leave, far)
-    return np.where((entry < leave) & (entry > 1e-9), entry, np.inf), leave, axes
+    return _enter_box(origins, directions, np.asarray(low, np.float64), np.asarray(high, np.float64))
+
+
+@njit(cache=True, error_model="numpy")
+def _enter_box(origins, directions, low, high):
+    count = len(directions)
+    entry, leave, axes = np.empty(count), np.empty(count), np.zeros((2, count), np.int64)
+    for n in range(count):
+        first, last = -np.inf, np.inf
+        for axis in range(3):
+            to_low = (low[axis] - origins[n, axis]) / directions[n, axis]
+            to_high = (high[axis] - origins[n, axis]) / directions[n, axis]
+            # a ray along the face gives 0 / 0 there, which is neither smaller nor larger: leave that bound out
+            near = to_high if to_high < to_low or to_low != to_low else to_low
+            far = to_high if to_high > to_low or to_low != to_low else to_low
+            if near > first:
+                first, axes[0, n] = near, axis
+            if far < last:
+                last, axes[1, n] = far, axis
+        entry[n], leave[n] = first if first < last and first > 1e-9 else np.inf, last
+    return entry, leave, axes

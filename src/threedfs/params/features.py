@@ -1,0 +1,21 @@
+"""Parameters of the features stage (Section 3.1)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from threedfs.params.field import parameter
+
+
+@dataclass(frozen=True)
+class FeaturesParams:
+    """Which keypoints of the frames are matched to find the cameras."""
+
+    max_features: int = parameter(2048, "most SIFT keypoints of a frame, the largest kept", minimum=100)
+    min_contrast: float = parameter(
+        0.00667,
+        "least contrast of a keypoint; smaller finds more on faint texture",
+        unit="grey range",
+        exclusive_minimum=0,
+    )
+    min_features: int = parameter(50, "least median number of keypoints of a frame", minimum=8)
