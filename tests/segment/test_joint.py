@@ -19,6 +19,7 @@ from threedfs.segment.energy import OBJECT
 from threedfs.segment.gather import GatherRule, gather_images, gather_voxels
 from threedfs.segment.hull import fit_masks
 from threedfs.segment.joint import CutRule, segment_jointly
+from threedfs.segment.outline import draw_voxels
 from threedfs.segment.refine import RefineRule, refine_mask
 from threedfs.segment.source_mask import distort_mask
 from threedfs.segment.volumetric import VolumetricRule, cut_volume
@@ -189,6 +190,22 @@ def test_masks_carve_and_fill_a_field():
     assert (after & wanted).sum() / (after | wanted).sum() > 0.9
     assert filled.any() and (fitted[filled] < 0).all()
     assert not (after & lump & ~ball)[np.linalg.norm(centres - CENTRE, axis=-1) > RADIUS + 0.04].any()
+
+
+def test_a_rim_of_the_masks_raises_no_peak_over_a_flat_object():
+    """Views from above leave a roof of the hull over a slab; masks a little wide call for a rim, not for that roof."""
+    scene, _ = make_scene(views=12)
+    centres, height = voxel_centres(scene.grid), height_above(PLANE, scene.grid)
+    slab = np.minimum(0.2 - np.abs(centres[..., :2]).max(-1), 0.06 - height) / (4 * scene.grid.spacing)
+    sdf = np.clip(-slab, -1, 1).astype(np.float32)
+    solid = (sdf < 0) & (height > 0)
+    drawn = draw_voxels(solid, scene.grid, scene.views)
+    wide = {name: ndimage.binary_dilation(mask, iterations=2) for name, mask in drawn.items()}
+    fitted, filled = fit_masks(
+        sdf, solid, height > 0, wide, scene.views, scene.grid, ramp=5, tolerance=0.1, least_views=2
+    )
+    assert filled.any() and (fitted[filled] < 0).all()
+    assert height[filled].max() < 0.06 + 4 * scene.grid.spacing
 
 
 def test_masks_that_fit_leave_a_field_alone():

@@ -44,8 +44,13 @@ def extract_surface(sdf: np.ndarray, grid: VoxelGrid) -> Mesh:
 
 def enclosed_volume(mesh: Mesh) -> float:
     """Return the volume that a closed mesh encloses, positive where its faces turn outward."""
+    return float(_volumes(mesh).sum())
+
+
+def _volumes(mesh: Mesh) -> np.ndarray:
+    """Return the signed volume (F,) between each face and the middle of the vertices."""
     a, b, c = (mesh.vertices[mesh.faces[:, corner]] - mesh.vertices.mean(axis=0) for corner in range(3))
-    return float((np.cross(a, b) * c).sum() / 6)
+    return (np.cross(a, b) * c).sum(axis=1) / 6
 
 
 def keep_largest_shell(mesh: Mesh) -> Mesh:
@@ -55,8 +60,7 @@ def keep_largest_shell(mesh: Mesh) -> Mesh:
     graph = coo_array((np.ones(len(edges), bool), (edges[:, 0], edges[:, 1])), shape=(count, count))
     shells, shell_of_vertex = connected_components(graph, directed=False)
     shell_of_face = shell_of_vertex[mesh.faces[:, 0]]
-    volumes = [enclosed_volume(Mesh(mesh.vertices, mesh.faces[shell_of_face == shell])) for shell in range(shells)]
-    best = int(np.argmax(volumes))
+    best = int(np.argmax(np.bincount(shell_of_face, _volumes(mesh), shells)))
     kept = shell_of_vertex == best
     renumbered = np.cumsum(kept) - 1
     return Mesh(mesh.vertices[kept], renumbered[mesh.faces[shell_of_face == best]])

@@ -5,15 +5,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
+from numba import njit
 from scipy import ndimage
 
-from threedfs.segment.lookup import find_pixels
-from threedfs.segment.outline import draw_voxels
+from threedfs.segment.lookup import nearest_pixels
+from threedfs.segment.outline import depth_inside, draw_voxels
 from threedfs.types import View, VoxelGrid
 
-_AS_MANY = 0.7
-"""Share of the most gaps that any voxel on a ray fills, from which a voxel is taken to fill them."""
+_STEPS = 30000
+"""Steps of the hull's field from 0 to 1: whole numbers of two bytes, as there is one for each voxel and view."""
+_RIM = 2
+"""Half width of a gap up to which it is a rim, voxels."""
+_REACH = 3
+"""Farthest from the solid that a rim is filled, voxels."""
 
 
 def fit_masks(
@@ -31,9 +37,10 @@ def fit_masks(
     """Return the field (nx, ny, nz) float32 in line with the masks, and which voxels (nx, ny, nz) bool it fills.
 
     Not in the paper. Outside the visual hull of the masks the field becomes positive. Inside, it becomes that of the
-    hull at voxels that views show on gaps: pixels of the mask that no solid voxel projects on. Of the voxels that could
-    fill a gap those do that fill most others too: views from above alone leave a peak of the hull over a flat object,
-    that a rim a pixel wide does not call for. What the hull cannot tell, such as hollows, stays as fused.
+    hull at voxels that views show on gaps: pixels of the mask that no solid voxel projects on. A wide gap is filled by
+    all of the hull behind it, a rim only by what is next to the solid: views from above alone leave a peak of the hull
+    over a flat object, which a mask a little wider than the field does not call for. What the hull cannot tell, such as
+    hollows, stays as fused.
 
     Parameters
     ----------
@@ -54,26 +61,28 @@ def fit_masks(
     """
     places = np.flatnonzero(allowed)
     centres = grid.origin + grid.spacing * np.stack(np.unravel_index(places, grid.shape), axis=1)
+    middle = np.append(centres[solid.reshape(-1)[places]].mean(axis=0) if solid.any() else centres.mean(axis=0), 1)
     covered = draw_voxels(solid, grid, views)
-    distances = np.full((len(views), len(places)), -np.inf, np.float16)
+    distances = np.full((len(views), len(places)), -_STEPS, np.int16)
     gaps = []
     for rank, (name, view) in enumerate(views.items()):
         mask = masks[name]
         if not mask.any():
             continue  # it does not show the object at all
-        outside = ndimage.distance_transform_edt(~mask) - ndimage.distance_transform_edt(mask)
-        outside -= 0.5 * np.sign(outside)
-        row, column, kept = find_pixels(view, centres)
-        depth = centres[kept] @ view.cam_from_world[2, :3] + view.cam_from_world[2, 3]
-        scale = depth / (view.camera.fx * grid.spacing * ramp)
-        distances[rank, kept] = np.clip(outside[row, column] * scale, -1, 1)
-        on_gap = (mask & ~covered[name])[row, column]
-        footprint = view.camera.fx * grid.spacing / np.median(depth) if len(depth) else 1
-        gaps.append(_Gap(np.flatnonzero(kept)[on_gap], row[on_gap], column[on_gap], mask.shape, footprint))
+        row, column = nearest_pixels(view, centres)
+        # world length of a pixel, per depth, in ramps of the hull's field
+        share = 1 / (view.camera.fx * grid.spacing * ramp)
+        _measure(centres, view.cam_from_world[2], row, column, -depth_inside(mask), share, distances[rank])
+        gap = mask & ~covered[name]
+        footprint = int(np.ceil(view.camera.fx * grid.spacing / (view.cam_from_world[2] @ middle)))
+        wide = cv2.morphologyEx(gap.astype(np.uint8), cv2.MORPH_OPEN, _disc(_RIM * footprint)) > 0
+        voxels = _on(gap, row, column)
+        gaps.append(_Gap(voxels, wide[row[voxels], column[voxels]]))
     allowance = min(int(tolerance * len(views)), len(views) - 1)
-    hull = np.partition(distances, len(views) - 1 - allowance, axis=0)[len(views) - 1 - allowance].astype(np.float32)
-    hull = np.maximum(hull, -1)
-    filled = _fill_gaps(gaps, hull < 0, least_views)
+    distances.partition(len(views) - 1 - allowance, axis=0)
+    hull = distances[len(views) - 1 - allowance] / np.float32(_STEPS)
+    near = ndimage.distance_transform_edt(~solid).reshape(-1)[places] <= _REACH
+    filled = _fill_gaps(gaps, hull < 0, near, least_views)
     fitted, fills = sdf.copy(), np.zeros(grid.shape, bool)
     values = fitted.reshape(-1)[places]
     values[filled] = np.minimum(values[filled], hull[filled])
@@ -84,25 +93,46 @@ def fit_masks(
 
 @dataclass(frozen=True)
 class _Gap:
-    """Voxels (N,) that a view shows on gaps, their pixels there, the image's shape, and a voxel's size in pixels."""
+    """Voxels (N,) that a view shows on gaps of its mask, and whether on wide ones (N,)."""
 
     voxels: np.ndarray
-    row: np.ndarray
-    column: np.ndarray
-    shape: tuple[int, int]
-    footprint: float
+    wide: np.ndarray
 
 
-def _fill_gaps(gaps: list[_Gap], allowed: np.ndarray, least_views: int) -> np.ndarray:
-    """Say which voxels (N,) fill gaps: in `least_views` views they fill nearly as many as any on the same ray."""
-    count = np.zeros(len(allowed), np.int16)
+def _fill_gaps(gaps: list[_Gap], allowed: np.ndarray, near: np.ndarray, least_views: int) -> np.ndarray:
+    """Say which voxels (N,) fill gaps that `least_views` views show them on: any gap if they are near, or wide ones."""
+    any_gap, wide = np.zeros(len(allowed), np.int16), np.zeros(len(allowed), np.int16)
     for gap in gaps:
-        count[gap.voxels] += 1
-    count[~allowed] = 0
-    chosen = np.zeros(len(allowed), np.int16)
-    for gap in gaps:
-        most = np.zeros(gap.shape, np.int16)
-        np.maximum.at(most, (gap.row, gap.column), count[gap.voxels])
-        most = ndimage.maximum_filter(most, 2 * int(np.ceil(gap.footprint / 2)) + 1)
-        chosen[gap.voxels] += count[gap.voxels] >= _AS_MANY * most[gap.row, gap.column]
-    return allowed & (chosen >= least_views)
+        any_gap[gap.voxels] += 1
+        wide[gap.voxels] += gap.wide
+    return allowed & (near & (any_gap >= least_views) | (wide >= least_views))
+
+
+@njit(cache=True)
+def _measure(centres, depth_from_world, row, column, outside, share, distances):
+    """Write the distance from the hull of one mask, in steps, of voxels that have a pixel."""
+    d = depth_from_world
+    for n in range(len(row)):
+        if row[n] >= 0:
+            depth = d[0] * centres[n, 0] + d[1] * centres[n, 1] + d[2] * centres[n, 2] + d[3]
+            level = outside[row[n], column[n]] * depth * share
+            distances[n] = np.rint(min(max(level, -1.0), 1.0) * _STEPS)
+
+
+@njit(cache=True)
+def _on(mask, row, column):
+    """Return the voxels, ascending, whose pixels are in a mask."""
+    count = 0
+    for n in range(len(row)):
+        count += row[n] >= 0 and mask[row[n], column[n]]
+    found = np.empty(count, np.int64)
+    count = 0
+    for n in range(len(row)):
+        if row[n] >= 0 and mask[row[n], column[n]]:
+            found[count] = n
+            count += 1
+    return found
+
+
+def _disc(radius: int) -> np.ndarray:
+    return cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (2 * radius + 1, 2 * radius + 1))

@@ -18,9 +18,14 @@ def find_pixels(view: View, points: np.ndarray) -> tuple[np.ndarray, np.ndarray,
     kept : (N,) bool
         Which points those are.
     """
-    row, column = _find(np.ascontiguousarray(points), view.px_from_world, view.camera.height, view.camera.width)
+    row, column = nearest_pixels(view, points)
     kept = row >= 0
     return row[kept], column[kept], kept
+
+
+def nearest_pixels(view: View, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return row and column (N,) int32 of the pixels nearest to world points (N, 3) float64, -1 where there is none."""
+    return _find(np.ascontiguousarray(points), view.px_from_world, view.camera.height, view.camera.width)
 
 
 @njit(cache=True)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import cv2
 import numpy as np
+from numba import njit
 
 from threedfs.segment.color_model import TableMatch, lab_image
 from threedfs.types import Plane, View
@@ -119,13 +120,51 @@ def picture_table(
         colors.append(cv2.warpPerspective(lab_image(images[name]), picture_from_image, size, flags=cv2.INTER_LINEAR))
         shown.append(cv2.warpPerspective(clear, picture_from_image, size, flags=cv2.INTER_LINEAR) > 0.99)
         shown[-1] &= _in_front(view, world_from_picture, size)
-    stack = np.where(np.stack(shown)[..., None], np.stack(colors), np.nan)
-    known = np.sum(shown, axis=0) >= _LEAST_VIEWS
-    color, spread = np.zeros((*known.shape, 3), np.float32), np.zeros(known.shape, np.float32)
-    color[known] = np.nanmedian(stack[:, known], axis=0)
-    spread[known] = np.nanmedian(np.linalg.norm(stack[:, known] - color[known], axis=-1), axis=0)
+    color, spread, known = _combine(np.stack(colors), np.stack(shown))
     known &= spread < _WIDEST
     return TablePicture(color, spread, known, _stand_on(world_from_picture, solid, known.shape), world_from_picture)
+
+
+@njit(cache=True)
+def _combine(colors, shown):
+    """Return the median colour (H, W, 3) over the views that show each spot, the median distance, and whether known."""
+    views, rows, columns = shown.shape
+    color, spread = np.zeros((rows, columns, 3), np.float32), np.zeros((rows, columns), np.float32)
+    known = np.zeros((rows, columns), np.bool_)
+    values, own = np.empty(views, np.float32), np.empty(views, np.int64)
+    for row in range(rows):
+        for column in range(columns):
+            count = 0
+            for view in range(views):
+                if shown[view, row, column]:
+                    own[count] = view
+                    count += 1
+            if count < _LEAST_VIEWS:
+                continue
+            known[row, column] = True
+            for channel in range(3):
+                for place in range(count):
+                    values[place] = colors[own[place], row, column, channel]
+                color[row, column, channel] = _take_median(values, count)
+            for place in range(count):
+                total = np.float32(0)
+                for channel in range(3):
+                    total += (colors[own[place], row, column, channel] - color[row, column, channel]) ** 2
+                values[place] = np.sqrt(total)
+            spread[row, column] = _take_median(values, count)
+    return color, spread, known
+
+
+@njit(cache=True)
+def _take_median(values, count):
+    """Sort the first values in place, by insertion as they are few, and return their median."""
+    for place in range(1, count):
+        value, before = values[place], place - 1
+        while before >= 0 and values[before] > value:
+            values[before + 1] = values[before]
+            before -= 1
+        values[before + 1] = value
+    return (values[(count - 1) // 2] + values[count // 2]) / np.float32(2)
 
 
 def _stand_on(world_from_picture, solid, shape):

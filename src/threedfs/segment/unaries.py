@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from scipy import ndimage
 
 from threedfs.segment.energy import BACKGROUND, EMPTY, OBJECT
 from threedfs.segment.lookup import find_pixels
+from threedfs.segment.outline import depth_inside
 from threedfs.types import View
 
 
@@ -30,8 +30,7 @@ def soften_silhouette(silhouette: np.ndarray, reach: float) -> np.ndarray:
     """
     if reach <= 0 or not silhouette.any() or silhouette.all():
         return silhouette.astype(np.float64)
-    depth = ndimage.distance_transform_edt(silhouette) - ndimage.distance_transform_edt(~silhouette)
-    return np.clip(0.5 + (depth - 0.5 * np.sign(depth)) / (2 * reach), 0, 1)
+    return np.clip(0.5 + depth_inside(silhouette).astype(np.float64) / (2 * reach), 0, 1)
 
 
 def sdf_unary(sdf: np.ndarray) -> np.ndarray:
