@@ -16,6 +16,7 @@ from threedfs.io import (
     calibration,
     consistency,
     depth_maps,
+    features,
     frames,
     keyframes,
     metrics,
@@ -26,7 +27,7 @@ from threedfs.io import (
     volumes,
 )
 from threedfs.segment.superpixels import Superpixels
-from threedfs.types import Camera, Keyframe, Plane, SparsePoints, View, VoxelGrid
+from threedfs.types import Camera, Features, Keyframe, Plane, SparsePoints, View, VoxelGrid
 
 HEADER = {"parameters": {"size": 3, "names": ["a", "b"]}, "provenance": "0123"}
 RANDOM = np.random.default_rng(5)
@@ -75,6 +76,15 @@ ARTIFACTS = [
         calibration.Calibration(CAMERA, 0.01, -0.002, 0.15, 25),
         calibration.write_calibration,
         calibration.read_calibration,
+    ),
+    Artifact(
+        "features.zarr.zip",
+        [  # the middle frame shows nothing
+            Features(RANDOM.random((count, 2)), *(RANDOM.integers(0, 256, (count, n), np.uint8) for n in (128, 3)))
+            for count in (3, 0, 2)
+        ],
+        features.write_features,
+        features.read_features,
     ),
     Artifact(
         "poses.json",
