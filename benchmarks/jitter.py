@@ -1,0 +1,147 @@
+"""How the zero-crossing correction stands wrong points and wrong poses: as configured, and as printed in the paper.
+
+    python benchmarks/jitter.py results/dragon [--levels 0 0.25 0.5 1]
+
+Takes the results of a rendered sequence with `deformed_sdf`. Each keyframe's camera is moved at random by a share of
+the longest side of the object's box; the fused field is made again with these cameras, and every surface point is moved
+with those that see it and by as much on its own. Prints the F-score of the mesh before and after both corrections.
+"""
+
+from __future__ import annotations
+
+import argparse
+import io
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import yaml
+
+from threedfs.evaluate.mesh_error import measure_mesh
+from threedfs.evaluate.pose_error import align_poses
+from threedfs.geometry.similarity import Similarity
+from threedfs.io.given_cameras import read_given_cameras
+from threedfs.io.keyframes import read_keyframes, write_keyframes
+from threedfs.io.meshes import read_mesh
+from threedfs.io.oriented_points import read_oriented_points, write_oriented_points
+from threedfs.io.volumes import read_support
+from threedfs.job import Job
+from threedfs.params.deform import DeformParams
+from threedfs.params.fuse_object import FuseObjectParams
+from threedfs.params.object import ObjectParams
+from threedfs.params.schema import default_settings, make_params
+from threedfs.progress import Progress
+from threedfs.stages import deform, fuse_object
+from threedfs.stages import object as object_stage
+from threedfs.types import Keyframe, Mesh, OrientedPoints
+
+PAPER = Path(__file__).resolve().parents[1] / "config" / "presets" / "paper.yaml"
+
+
+def jitter_cameras(keyframes: Mapping[str, Keyframe], steps: np.ndarray) -> list[Keyframe]:
+    """Return the keyframes with their cameras moved by steps (K, 3), world."""
+    moved = []
+    for keyframe, step in zip(keyframes.values(), steps, strict=True):
+        pose = keyframe.view.cam_from_world.copy()
+        pose[:3, 3] -= pose[:3, :3] @ step
+        moved.append(replace(keyframe, view=replace(keyframe.view, cam_from_world=pose)))
+    return moved
+
+
+def jitter_points(points: OrientedPoints, steps: np.ndarray, deviation: float, rng: np.random.Generator):
+    """Return the points moved by the mean step of the keyframes that see them, and each on its own."""
+    moved = points.xyz + rng.normal(0, deviation, points.xyz.shape)
+    for axis in range(3):
+        total = np.bincount(points.seen_point, steps[points.seen_view, axis], len(moved))
+        moved[:, axis] += total / np.maximum(points.sightings, 1)
+    return replace(points, xyz=moved.astype(np.float32))
+
+
+def align_truth(results: Path) -> Similarity:
+    """Return truth from scene."""
+    given = read_given_cameras(results / "00_render/cameras.json", None)
+    poses = {f"{camera.video_frame:06d}": camera.cam_from_world for camera in given if camera.video_frame is not None}
+    keyframes = read_keyframes(results / "03_keyframes/keyframes.json")
+    names = [name for name in keyframes if name in poses]
+    return align_poses([keyframes[name].view.cam_from_world for name in names], [poses[name] for name in names])
+
+
+def measure(results: Path, folder: Path, level: float, corrections: Mapping[str, DeformParams]) -> list[float]:
+    """Return the F-scores at 0.5 % of the fused mesh and of those after each correction, at a level of jitter, %."""
+    job = Job(Progress("jitter", io.StringIO()), {}, 2, 0)
+    support = results / "07_fusion/support.json"
+    place, rng = read_support(support), np.random.default_rng(0)
+    deviation = level / 100 * float((place.high - place.low).max())
+    keyframes = read_keyframes(results / "03_keyframes/keyframes.json")
+    steps = rng.normal(0, deviation, (len(keyframes), 3))
+    write_keyframes(folder / "keyframes.json", jitter_cameras(keyframes, steps), {})
+    points, engine = read_oriented_points(results / "08_densify/points.zarr.zip")
+    moved = jitter_points(points, steps, deviation, rng)
+    write_oriented_points(folder / "points.zarr.zip", moved, list(keyframes), engine, {})
+    maps = {name: sorted((results / name).glob("*.zarr.zip")) for name in ("04_semidense", "06_depth")}
+    fuse_object.run(
+        keyframes=folder / "keyframes.json",
+        depth=maps["06_depth"],
+        consistency=results / "07_fusion/consistency.zarr.zip",
+        support=support,
+        volume=folder / "fused.zarr.zip",
+        params=FuseObjectParams(),
+        job=job,
+    )
+    fields = {"fused": folder / "fused.zarr.zip"}
+    for name, params in corrections.items():
+        fields[name] = folder / f"{name}.zarr.zip"
+        deform.run(
+            field=fields["fused"],
+            support=support,
+            cloud=folder / "points.zarr.zip",
+            volume=fields[name],
+            params=params,
+            job=job,
+        )
+    truth, truth_from_scene = read_mesh(results / "00_render/mesh.ply"), align_truth(results)
+    scores = []
+    for name, field in fields.items():
+        object_stage.run(
+            field=field,
+            support=support,
+            keyframes=folder / "keyframes.json",
+            poses=results / "02_poses/poses.json",
+            frames=results / "01_frames/frames.zarr.zip",
+            semidense=maps["04_semidense"],
+            mesh=folder / "mesh.ply",
+            volume=folder / "alone.zarr.zip",
+            silhouettes=folder / "silhouettes.zarr.zip",
+            masks=folder / f"masks_{name}",
+            method=name,
+            params=ObjectParams(),
+            job=job,
+        )
+        mesh = read_mesh(folder / "mesh.ply")
+        aligned = Mesh(truth_from_scene.apply(mesh.vertices), mesh.faces)
+        error = measure_mesh(aligned, truth, (0.5,), 50000, np.random.default_rng(0))
+        scores.append(error.agreement[0].f_score)
+    return scores
+
+
+def main() -> None:
+    """Print a line for each level."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("results", type=Path, help="folder of the results of a sequence")
+    parser.add_argument(
+        "--levels", type=float, nargs="+", default=[0, 0.25, 0.5, 1], help="percent of the object's side"
+    )
+    options = parser.parse_args()
+    printed = default_settings(DeformParams) | yaml.safe_load(PAPER.read_text())["deform"]
+    corrections = {"configured": DeformParams(), "printed": make_params(DeformParams, printed)}
+    print(f"{'jitter, %':>10} {'fused':>10}", *(f"{name:>10}" for name in corrections))
+    for level in options.levels:
+        with TemporaryDirectory(prefix="threedfs-") as folder:
+            scores = measure(options.results, Path(folder), level, corrections)
+        print(f"{level:10g}", *(f"{score:10.3f}" for score in scores), flush=True)
+
+
+if __name__ == "__main__":
+    main()
