@@ -38,8 +38,8 @@ CASES = {
     ),
     "variant of another stage": ("variants: {a: {depth: {}}}", "variants.a: unknown key depth"),
     "variant out of range": (
-        "variants: {a: {segment: {link_weight: -1}}}",
-        "variants.a.segment.link_weight: expected at least 0, got -1",
+        "methods: [gc_select]\nvariants: {a: {segment: {link_weight: -1}}}",
+        "variants.a.segment.link_weight: expected at least 0.0, got -1",
     ),
     "negative seed": ("seed: -1", "seed: expected at least 0, got -1"),
 }

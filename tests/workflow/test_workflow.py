@@ -15,8 +15,8 @@ from collections import Counter
 from threedfs.store.files import remove_abandoned
 
 RULES = (
-    "render calibrate frames poses undistort keyframes semidense edges depth consistency fuse_scene locate fuse_object "
-    "object evaluate collect all"
+    "render calibrate frames features poses undistort keyframes semidense edges depth consistency fuse_scene locate "
+    "fuse_object object evaluate collect all"
 ).split()
 FILMED = ("video.mp4", "cameras.json", "mesh.ply")
 
@@ -199,7 +199,8 @@ def test_variants_cut_again_with_their_settings_and_get_a_table(finished):
     )
     output = finished.run("--configfile", "variants.yaml")
     expected = {"superpixels": 2, "segment": 2, "cut_object": 3, "pixel_masks": 3, "evaluate": 6, "collect": 1}
-    assert jobs_done(output) == Counter(expected)
+    # masks of pixels do not depend on how a mesh is cut: those of the second variant are those of none
+    assert jobs_done(output) + jobs_taken(output) == Counter(expected)
     results = finished.folder / "results/sample"
     plain, other = (
         json.loads((results / f"10_segment/joint{name}.zarr.zip").read_text()) for name in ("", "@no_table")
@@ -237,7 +238,17 @@ def test_depth_experiment_tries_keyframes_that_have_a_true_depth_and_joins_the_t
         f"dataset: own\nsequences: {{mug: {entry}}}\ndepth_experiment: {{sequences: [mug]}}\n"
     )
     output = project.run("--configfile", "own.yaml")
-    once = ("frames", "poses", "undistort", "keyframes", "edges", "depth_trial", "depth_experiment", "collect")
+    once = (
+        "frames",
+        "features",
+        "poses",
+        "undistort",
+        "keyframes",
+        "edges",
+        "depth_trial",
+        "depth_experiment",
+        "collect",
+    )
     assert jobs_done(output) == Counter(once)
     trial = json.loads((project.folder / "results/mug/12_depth_experiment/000002.zarr.zip").read_text())
     assert trial["names"]["depth_scale"] == 5000 and trial["names"]["depth_settings"]["prior"] == "rotation_invariant"
