@@ -35,7 +35,7 @@ _OPEN_SHARE = 0.1
 
 @dataclass(frozen=True)
 class Problem:
-    """Costs (N, 3), pairs (P, 2), weights (P,), labels (N,) of all nodes, and which are open (N,)."""
+    """Pairs (P, 2), weights (P,), labels (N,), which nodes are open (N,), and the costs (N, 3) of those, or of all."""
 
     unary: np.ndarray
     pairs: np.ndarray
@@ -45,7 +45,7 @@ class Problem:
 
 
 def make_problem(side: int, keyframes: int, superpixels: int, whole: bool) -> Problem:
-    """Return the energy and first labels; pairs of given voxels only for the whole graph."""
+    """Return the energy and first labels; pairs and costs of given voxels only for the whole graph."""
     rng = np.random.default_rng(0)
     axis = np.linspace(-1, 1, side, dtype=np.float32)
     radius = np.sqrt(axis[:, None, None] ** 2 + axis[:, None] ** 2 + axis**2)
@@ -68,7 +68,7 @@ def make_problem(side: int, keyframes: int, superpixels: int, whole: bool) -> Pr
     voxels = count + voxel_pairs(np.ones_like(fixed, bool) if whole else fixed == UNDECIDED)
     weights = [np.full(count - 1, 0.5), np.full(5 * count, 0.04), np.full(len(voxels), 0.3)]
     return Problem(
-        unary,
+        unary if whole else unary[is_open],
         np.concatenate([beside, links, voxels], dtype=np.int32),
         np.concatenate(weights, dtype=np.float32),
         np.concatenate([rng.integers(0, 2, count), first]).astype(np.uint8),
@@ -79,7 +79,7 @@ def make_problem(side: int, keyframes: int, superpixels: int, whole: bool) -> Pr
 def cut_folded(problem: Problem) -> np.ndarray:
     """Return the labels after three moves of the project's expansion."""
     labels, is_open = problem.labels.copy(), problem.is_open
-    graph = fold_given(problem.pairs, problem.weight, labels, is_open, 3).with_costs(problem.unary[is_open])
+    graph = fold_given(problem.pairs, problem.weight, labels, is_open, 3).with_costs(problem.unary)
     for target in (BACKGROUND, OBJECT, EMPTY):
         labels[is_open] = expand(graph, labels[is_open], target)
     return labels
