@@ -1,5 +1,7 @@
 # Where rules find their inputs: what the configuration names, and one file per keyframe.
 
+from threedfs.params.configuration import JOINT_METHODS
+
 FIELDS = {  # where each method that has one finds the object's field
     "fused_sdf": "07_fusion/object.zarr.zip",
     "deformed_sdf": "09_deform/volume.zarr.zip",
@@ -19,7 +21,7 @@ METHODS = [
     *(
         f"{method}@{variant}"
         for method in config["methods"]
-        if (CUTS | PIXEL_CUTS).get(method) == "joint"
+        if method in JOINT_METHODS
         for variant in VARIANTS
     ),
 ]

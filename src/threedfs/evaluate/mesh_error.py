@@ -6,11 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import coo_array
-from scipy.sparse.csgraph import connected_components
 
 from threedfs.evaluate.surface import SurfaceDistance, sample_surface
-from threedfs.object.extract import enclosed_volume
+from threedfs.object.extract import enclosed_volume, find_shells
 from threedfs.types import Mesh
 
 
@@ -121,11 +119,7 @@ def is_closed(mesh: Mesh) -> bool:
 
 def count_pieces(mesh: Mesh) -> int:
     """Return the number of pieces that share no vertex."""
-    used, faces = np.unique(mesh.faces, return_inverse=True)
-    faces = faces.reshape(-1, 3)
-    ends = (np.concatenate([faces[:, 0], faces[:, 1]]), np.concatenate([faces[:, 1], faces[:, 2]]))
-    graph = coo_array((np.ones(len(ends[0]), bool), ends), shape=(len(used), len(used)))
-    return int(connected_components(graph, directed=False, return_labels=False))
+    return len(np.unique(find_shells(mesh)[mesh.faces[:, 0]]))
 
 
 def filled_share(mesh: Mesh) -> float:

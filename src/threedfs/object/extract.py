@@ -53,14 +53,19 @@ def _volumes(mesh: Mesh) -> np.ndarray:
     return (np.cross(a, b) * c).sum(axis=1) / 6
 
 
-def keep_largest_shell(mesh: Mesh) -> Mesh:
-    """Keep that connected part of a closed mesh which encloses the largest volume."""
+def find_shells(mesh: Mesh) -> np.ndarray:
+    """Return the number (V,) int32 of the connected part that each vertex is in; one of no face is a part alone."""
     edges = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]]])
     count = len(mesh.vertices)
     graph = coo_array((np.ones(len(edges), bool), (edges[:, 0], edges[:, 1])), shape=(count, count))
-    shells, shell_of_vertex = connected_components(graph, directed=False)
+    return connected_components(graph, directed=False)[1]
+
+
+def keep_largest_shell(mesh: Mesh) -> Mesh:
+    """Keep that connected part of a closed mesh which encloses the largest volume."""
+    shell_of_vertex = find_shells(mesh)
     shell_of_face = shell_of_vertex[mesh.faces[:, 0]]
-    best = int(np.argmax(np.bincount(shell_of_face, _volumes(mesh), shells)))
+    best = int(np.argmax(np.bincount(shell_of_face, _volumes(mesh))))
     kept = shell_of_vertex == best
     renumbered = np.cumsum(kept) - 1
     return Mesh(mesh.vertices[kept], renumbered[mesh.faces[shell_of_face == best]])

@@ -74,7 +74,7 @@ def fit_masks(
         share = 1 / (view.camera.fx * grid.spacing * ramp)
         _measure(centres, view.cam_from_world[2], row, column, -depth_inside(mask), share, distances[rank])
         gap = mask & ~covered[name]
-        footprint = int(np.ceil(view.camera.fx * grid.spacing / (view.cam_from_world[2] @ middle)))
+        footprint = max(1, int(np.ceil(view.camera.fx * grid.spacing / (view.cam_from_world[2] @ middle))))
         wide = cv2.morphologyEx(gap.astype(np.uint8), cv2.MORPH_OPEN, _disc(_RIM * footprint)) > 0
         voxels = _on(gap, row, column)
         gaps.append(_Gap(voxels, wide[row[voxels], column[voxels]]))
