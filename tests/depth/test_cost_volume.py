@@ -17,7 +17,7 @@ def zncc_cost(reference, warped, radius, floor=0.0):
     patches = describe_patches(reference, radius, floor)
     grey = np.where(reference > MISSING / 2, reference, np.float32(0))
     cost = np.zeros_like(reference)
-    scratch = [np.empty(reference.shape[1], np.float32) for _ in range(3)]
+    column, patch = np.empty((2, 3, reference.shape[1]), np.float32)
     accumulate_cost(
         warped,
         grey,
@@ -26,7 +26,8 @@ def zncc_cost(reference, warped, radius, floor=0.0):
         radius,
         np.float32(floor),
         np.float32(0.5),
-        *scratch,
+        column,
+        patch,
         cost,
     )
     return cost

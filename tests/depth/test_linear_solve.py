@@ -1,13 +1,16 @@
 """Exact, property and oracle: priors, and the multigrid solve against a direct one."""
 
+import itertools
+
 import numpy as np
 import pytest
 import scipy.sparse as sparse
 from scipy.sparse.linalg import spsolve
 
 from threedfs.depth.bending import HALF_OFFSETS, PRIORS, assemble_prior, prior_energy
+from threedfs.depth.galerkin import coarsen_diagonal, coarsen_prior, padded_shape
 from threedfs.depth.linear_solve import pose_problem, solve_surface
-from threedfs.depth.multigrid import Preconditioner, coarsen_diagonal, coarsen_prior, padded_shape
+from threedfs.depth.multigrid import Preconditioner
 
 SHAPE = (50, 61)
 
@@ -61,6 +64,32 @@ def test_only_the_rotation_invariant_prior_ignores_rotation():
 def test_padded_shapes_halve_evenly():
     assert padded_shape((480, 640)) == (481, 641)
     assert padded_shape((10, 12)) == (11, 13) or padded_shape((10, 12)) == (10, 12)
+
+
+def bilinear_interpolation(shape):
+    """The (fine, coarse) matrix of interpolation, from one axis each."""
+
+    def along(fine):
+        nodes = np.arange((fine + 1) // 2)
+        return np.maximum(1 - np.abs(np.arange(fine)[:, None] / 2 - nodes), 0)
+
+    return sparse.kron(sparse.csc_matrix(along(shape[0])), sparse.csc_matrix(along(shape[1])))
+
+
+@pytest.mark.parametrize("prior", PRIORS)
+def test_coarse_matrices_are_galerkin_products(prior):
+    """Oracle: interpolation as a sparse matrix; of a second-order prior 0.7 times that."""
+    shape = (53, 65)
+    levels = coarsen_prior(random_weight(5, shape), prior)
+    assert [level.shape for level in levels] == [(53, 65), (27, 33), (14, 17)]
+    matrix = sparse_matrix(assemble_prior(random_weight(5, shape), prior))
+    for fine, coarse in itertools.pairwise(levels):
+        interpolation = bilinear_interpolation(fine.shape)
+        matrix = (1.0 if prior == "first_order" else 0.7) * interpolation.T @ matrix @ interpolation
+        planes = coarse.planes.reshape(13, coarse.shape[0] + 4, coarse.shape[1] + 4)
+        assert abs(sparse_matrix(planes[:, 2:-2, 2:-2]) - matrix).max() < 1e-12
+        assert not coarse.planes[sorted(set(range(13)) - set(coarse.used))].any()
+        assert np.count_nonzero(planes) == np.count_nonzero(planes[:, 2:-2, 2:-2])
 
 
 def test_preconditioner_is_symmetric_and_positive():

@@ -28,10 +28,17 @@ HALF_OFFSETS = (
 )
 """(row, column) steps whose coefficients are stored; those of the opposite steps follow by symmetry."""
 
+STENCILS = {
+    "first_order": (0, 1, 5),
+    "second_order": (0, 1, 2, 5, 10),
+    "rotation_invariant": (0, 1, 2, 4, 5, 6, 10),
+}
+"""Which of `HALF_OFFSETS` a prior couples a pixel with."""
+
 _ORDER = {"first_order": 1, "second_order": 2, "rotation_invariant": 3}
 
 
-def assemble_prior(weight: np.ndarray, prior: str) -> np.ndarray:
+def assemble_prior(weight: np.ndarray, prior: str, border: int = 0) -> np.ndarray:
     """Assemble the half stencil of a smoothness prior, one plane for each of its coefficients.
 
     Parameters
@@ -41,16 +48,22 @@ def assemble_prior(weight: np.ndarray, prior: str) -> np.ndarray:
     prior : {"first_order", "second_order", "rotation_invariant"}
         Squared gradient; squared second derivatives along the axes; these and twice the squared mixed
         derivative, the bending energy that an in-plane rotation of the camera leaves unchanged (Eq. 3).
+    border : int
+        So many rows and columns of zeros are left on each side.
 
     Differs from the paper, whose lambda_s(u) is one weight a pixel: differences between pixel centres (gradients, the
     mixed derivative) take the least weight of their pixels, so that an edge one pixel wide cuts them too.
 
     Returns
     -------
-    (13, H, W) float64
+    (13, H + 2 border, W + 2 border) float64
         Coefficients in the order of `HALF_OFFSETS` of the matrix whose quadratic form is the energy.
     """
-    return _assemble(np.ascontiguousarray(weight, np.float64), _ORDER[prior])
+    height, width = weight.shape
+    planes = np.zeros((len(HALF_OFFSETS), height + 2 * border, width + 2 * border))
+    inner = planes[:, border : border + height, border : border + width]
+    _assemble(np.ascontiguousarray(weight, np.float64), _ORDER[prior], inner)
+    return planes
 
 
 def prior_energy(depth: np.ndarray, weight: np.ndarray, prior: str) -> float:
@@ -100,9 +113,8 @@ def release_bends(depth: np.ndarray, tolerated: float, prior: str) -> np.ndarray
 
 
 @njit(cache=True)
-def _assemble(weight, order):
+def _assemble(weight, order, planes):
     height, width = weight.shape
-    planes = np.zeros((13, height, width))
     for v in range(height):
         for u in range(width):
             if order == 1:
@@ -144,4 +156,3 @@ def _assemble(weight, order):
                 planes[5, v, u + 1] -= w
                 planes[6, v, u] += w
                 planes[4, v, u + 1] += w
-    return planes

@@ -83,16 +83,18 @@ def compute_cost_volume(
     height, width = reference_grey.shape
     patches = describe_patches(reference_grey, patch_radius, variance_floor)
     grey = np.where(reference_grey > MISSING / 2, reference_grey, np.float32(0))
-    scratch = [np.empty(width, np.float32) for _ in range(3)]
+    column, patch = np.empty((2, 3, width), np.float32)
+    warped = np.empty((height, width), np.float32)
     cost = np.zeros((len(candidates), height, width), np.float32)
     for neighbour in track(neighbours):
         image = read_grey(neighbour)
         for index, depth in enumerate(candidates):
             neighbour_from_reference = plane_homography(reference, neighbour, depth)
-            warped = cv2.warpPerspective(
+            cv2.warpPerspective(
                 image,
                 neighbour_from_reference,
                 (width, height),
+                dst=warped,
                 flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
                 borderMode=cv2.BORDER_CONSTANT,
                 borderValue=float(MISSING),
@@ -106,7 +108,8 @@ def compute_cost_volume(
                 patch_radius,
                 np.float32(variance_floor),
                 np.float32(missing_cost),
-                *scratch,
+                column,
+                patch,
                 cost[index],
             )
     cost /= np.float32(len(neighbours))

@@ -7,15 +7,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numba import njit
 
-from threedfs.depth.multigrid import (
-    BORDER,
-    Level,
-    Preconditioner,
-    coarsen_diagonal,
-    coarsen_prior,
-    flat_offsets,
-    padded_shape,
-)
+from threedfs.depth.galerkin import BORDER, Level, coarsen_diagonal, coarsen_prior, flat_offsets, padded_shape
+from threedfs.depth.multigrid import Preconditioner
 from threedfs.errors import UserError
 
 _PADDING_WEIGHT = 1e-4
@@ -117,8 +110,7 @@ def solve_surface(
         )
     planes = problem.prior[0].planes
     height, width = problem.padded
-    active = np.flatnonzero([plane.any() for plane in planes])
-    active = active[active > 0]
+    active = np.array(problem.prior[0].used[1:], np.int64)
     offsets = flat_offsets(active, width + 2 * BORDER)
 
     def multiply(x: np.ndarray) -> np.ndarray:

@@ -87,11 +87,12 @@ def _patch_statistics(grey, radius, floor):
     return mean, variance, inverse_deviation
 
 
-@njit(cache=True)
-def accumulate_cost(
-    warped, grey, mean, inverse_deviation, radius, floor, missing_cost, column_sum, column_square, column_product, cost
-):
+@njit(cache=True, error_model="numpy")
+def accumulate_cost(warped, grey, mean, inverse_deviation, radius, floor, missing_cost, column, patch, cost):
     """Add (1 - ZNCC) / 2 of every patch pair to `cost` in place (the summand of Eq. 1).
+
+    Each inner loop runs along a row and has no other loop, branch or checked division in it, so that it compiles
+    to vector instructions.
 
     Parameters
     ----------
@@ -103,24 +104,24 @@ def accumulate_cost(
         As in `describe_patches`.
     missing_cost : float32
         Charged where the neighbour does not show the patch.
-    column_sum, column_square, column_product : (W,) float32
-        Scratch.
+    column, patch : (3, W) float32
+        Scratch: sums of values, squares and products over a patch's column, and over the patch.
     cost : (H, W) float32
         Changed in place; pixels closer than `radius` to the border get `missing_cost`.
     """
     height, width = grey.shape
+    inner = width - 2 * radius
     scale = np.float32(1.0 / ((2 * radius + 1) ** 2))
     half = np.float32(0.5)
+    column_sum, column_square, column_product = column[0], column[1], column[2]
+    patch_sum, patch_square, patch_product = patch[0], patch[1], patch[2]
     for v in range(height):
         row = cost[v]
         if v < radius or v >= height - radius:
             for u in range(width):
                 row[u] += missing_cost
             continue
-        for u in range(width):
-            column_sum[u] = 0
-            column_square[u] = 0
-            column_product[u] = 0
+        column[:] = 0
         for dv in range(-radius, radius + 1):
             warped_row = warped[v + dv]
             grey_row = grey[v + dv]
@@ -129,23 +130,28 @@ def accumulate_cost(
                 column_sum[u] += value
                 column_square[u] += value * value
                 column_product[u] += value * grey_row[u]
+        for k in range(3):
+            out = patch[k]
+            centre = column[k, radius:]
+            for u in range(inner):
+                out[u] = centre[u]
+            for du in range(1, radius + 1):
+                before = column[k, radius - du :]
+                after = column[k, radius + du :]
+                for u in range(inner):
+                    out[u] += before[u] + after[u]
         for u in range(radius):
             row[u] += missing_cost
             row[width - 1 - u] += missing_cost
-        mean_row = mean[v]
-        spread_row = inverse_deviation[v]
-        for u in range(radius, width - radius):
-            total = column_sum[u]
-            square = column_square[u]
-            product = column_product[u]
-            for du in range(1, radius + 1):
-                total += column_sum[u - du] + column_sum[u + du]
-                square += column_square[u - du] + column_square[u + du]
-                product += column_product[u - du] + column_product[u + du]
+        mean_row = mean[v, radius:]
+        spread_row = inverse_deviation[v, radius:]
+        inner_row = row[radius:]
+        for u in range(inner):
+            total = patch_sum[u]
             average = total * scale
-            variance = max(square * scale - average * average + floor, _LEAST_VARIANCE)
-            covariance = product * scale - average * mean_row[u]
+            variance = max(patch_square[u] * scale - average * average + floor, _LEAST_VARIANCE)
+            covariance = patch_product[u] * scale - average * mean_row[u]
             correlation = covariance * spread_row[u] / np.sqrt(variance)
             correlation = min(max(correlation, np.float32(-1)), np.float32(1))
             known = total > np.float32(-1e5)
-            row[u] += half * (np.float32(1) - correlation) if known else missing_cost
+            inner_row[u] += half * (np.float32(1) - correlation) if known else missing_cost
