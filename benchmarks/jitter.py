@@ -1,8 +1,8 @@
 """How the zero-crossing correction stands wrong points and wrong poses: as configured, and as printed in the paper.
 
-    python benchmarks/jitter.py results/dragon [--levels 0 0.25 0.5 1]
+    python benchmarks/jitter.py results/dragon results/books [--levels 0 0.25 0.5 1] [--plot docs/plots/jitter.svg]
 
-Takes the results of a rendered sequence with `deformed_sdf`. Each keyframe's camera is moved at random by a share of
+Takes the results of rendered sequences with `deformed_sdf`. Each keyframe's camera is moved at random by a share of
 the longest side of the object's box; the fused field is made again with these cameras, and every surface point is moved
 with those that see it and by as much on its own. Prints the F-score of the mesh before and after both corrections.
 """
@@ -11,21 +11,26 @@ from __future__ import annotations
 
 import argparse
 import io
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
 import numpy as np
 import yaml
+from matplotlib import rc_context
+from matplotlib.figure import Figure
 
 from threedfs.evaluate.mesh_error import measure_mesh
-from threedfs.evaluate.pose_error import align_poses
+from threedfs.evaluate.plots import COLOURS
+from threedfs.evaluate.true_cameras import relate_cameras
 from threedfs.geometry.similarity import Similarity
+from threedfs.io.frames import read_frames
 from threedfs.io.given_cameras import read_given_cameras
 from threedfs.io.keyframes import read_keyframes, write_keyframes
 from threedfs.io.meshes import read_mesh
 from threedfs.io.oriented_points import read_oriented_points, write_oriented_points
+from threedfs.io.poses import read_poses
 from threedfs.io.volumes import read_support
 from threedfs.job import Job
 from threedfs.params.deform import DeformParams
@@ -61,11 +66,12 @@ def jitter_points(points: OrientedPoints, steps: np.ndarray, deviation: float, r
 
 def align_truth(results: Path) -> Similarity:
     """Return truth from scene."""
-    given = read_given_cameras(results / "00_render/cameras.json", None)
-    poses = {f"{camera.video_frame:06d}": camera.cam_from_world for camera in given if camera.video_frame is not None}
-    keyframes = read_keyframes(results / "03_keyframes/keyframes.json")
-    names = [name for name in keyframes if name in poses]
-    return align_poses([keyframes[name].view.cam_from_world for name in names], [poses[name] for name in names])
+    truth = relate_cameras(
+        read_given_cameras(results / "00_render/cameras.json", None),
+        read_poses(results / "02_poses/poses.json").views,
+        read_frames(results / "01_frames/frames.zarr.zip"),
+    )
+    return truth.from_scene
 
 
 def measure(results: Path, folder: Path, level: float, corrections: Mapping[str, DeformParams]) -> list[float]:
@@ -126,21 +132,48 @@ def measure(results: Path, folder: Path, level: float, corrections: Mapping[str,
     return scores
 
 
+def draw_curves(levels: Sequence[float], scores: np.ndarray, names: Sequence[str], path: Path) -> None:
+    """Draw F-scores (sequences, levels, fields) over the level of jitter: the mean, and each sequence thin."""
+    figure = Figure(figsize=(4.8, 3.4), layout="constrained")
+    axes = figure.subplots()
+    for number, name in enumerate(names):
+        axes.plot(levels, scores[:, :, number].T, color=COLOURS[number], linewidth=0.6, alpha=0.5)
+        axes.plot(levels, scores[:, :, number].mean(axis=0), color=COLOURS[number], marker="o", label=name)
+    axes.set_xlabel("jitter of cameras and points, % of the object's side")
+    axes.set_ylabel("F-score at 0.5 %")
+    axes.set_ylim(0, 1)
+    axes.legend(fontsize=8, frameon=False)
+    with rc_context({"svg.hashsalt": "threedfs"}):
+        figure.savefig(path, format="svg", metadata={"Date": None, "Creator": None})
+
+
 def main() -> None:
-    """Print a line for each level."""
+    """Print a line for each sequence and level, then the means."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("results", type=Path, help="folder of the results of a sequence")
+    parser.add_argument("results", type=Path, nargs="+", help="folders of the results of sequences")
     parser.add_argument(
         "--levels", type=float, nargs="+", default=[0, 0.25, 0.5, 1], help="percent of the object's side"
     )
+    parser.add_argument("--plot", type=Path, help="draw the curves into this SVG")
     options = parser.parse_args()
     printed = default_settings(DeformParams) | yaml.safe_load(PAPER.read_text())["deform"]
     corrections = {"configured": DeformParams(), "printed": make_params(DeformParams, printed)}
-    print(f"{'jitter, %':>10} {'fused':>10}", *(f"{name:>10}" for name in corrections))
-    for level in options.levels:
-        with TemporaryDirectory(prefix="threedfs-") as folder:
-            scores = measure(options.results, Path(folder), level, corrections)
-        print(f"{level:10g}", *(f"{score:10.3f}" for score in scores), flush=True)
+    names = ["fused", *corrections]
+    print(f"{'sequence':>12} {'jitter, %':>10}", *(f"{name:>10}" for name in names))
+    scores = np.empty((len(options.results), len(options.levels), len(names)))
+    for row, results in enumerate(options.results):
+        for column, level in enumerate(options.levels):
+            with TemporaryDirectory(prefix="threedfs-") as folder:
+                scores[row, column] = measure(results, Path(folder), level, corrections)
+            _print_line(results.name, level, scores[row, column])
+    for level, mean in zip(options.levels, scores.mean(axis=0), strict=True):
+        _print_line("mean", level, mean)
+    if options.plot is not None:
+        draw_curves(options.levels, scores, names, options.plot)
+
+
+def _print_line(sequence: str, level: float, scores: Sequence[float]) -> None:
+    print(f"{sequence:>12} {level:10g}", *(f"{score:10.3f}" for score in scores), flush=True)
 
 
 if __name__ == "__main__":

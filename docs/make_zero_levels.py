@@ -18,12 +18,14 @@ import numpy as np
 from make_pictures import shade
 from scipy.ndimage import map_coordinates
 
-from threedfs.evaluate.pose_error import align_poses
+from threedfs.evaluate.true_cameras import relate_cameras
 from threedfs.geometry.grid import voxel_from_world
 from threedfs.geometry.raycast import RayCaster
+from threedfs.io.frames import read_frames
 from threedfs.io.given_cameras import read_given_cameras
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
+from threedfs.io.poses import read_poses
 from threedfs.io.volumes import read_support, read_volume
 from threedfs.types import Mesh, Plane, VoxelGrid
 
@@ -44,16 +46,11 @@ def true_mesh(results: Path) -> Mesh | None:
     folder = results / "00_render"
     if not folder.is_dir():
         return None
-    keyframes = read_keyframes(results / "03_keyframes/keyframes.json")
-    given = {
-        f"{camera.video_frame:06d}": camera
-        for camera in read_given_cameras(folder / "cameras.json", None)
-        if camera.video_frame is not None
-    }
-    names = [name for name in keyframes if name in given]
-    truth_from_scene = align_poses(
-        [keyframes[name].view.cam_from_world for name in names], [given[name].cam_from_world for name in names]
-    )
+    truth_from_scene = relate_cameras(
+        read_given_cameras(folder / "cameras.json", None),
+        read_poses(results / "02_poses/poses.json").views,
+        read_frames(results / "01_frames/frames.zarr.zip"),
+    ).from_scene
     mesh = read_mesh(folder / "mesh.ply")
     back = (mesh.vertices - truth_from_scene.translation) @ truth_from_scene.rotation / truth_from_scene.scale
     return Mesh(back, mesh.faces)

@@ -246,6 +246,15 @@ def test_sequences_that_cannot_take_part_in_the_depth_experiment_are_refused(def
         load_sequences(merged(defaults, own), ROOT)
 
 
+@pytest.mark.parametrize("what", ["mesh", "depth"])
+def test_a_truth_without_its_cameras_is_refused(defaults, what, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("mug.mp4").touch()
+    own = {"sequences": {"mug": {"source": "mug.mp4", "truth": {what: "mug.mp4"}}}}
+    with pytest.raises(UserError, match=rf"sequences\.mug\.truth\.{what}: expected truth\.cameras beside it"):
+        load_sequences(merged(defaults, own), ROOT)
+
+
 def test_a_skipped_sequence_does_not_take_part_in_the_depth_experiment(defaults, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     Path("mug.mp4").touch()

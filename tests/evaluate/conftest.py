@@ -23,8 +23,9 @@ from threedfs.io.poses import Poses, write_poses
 from threedfs.job import Job
 from threedfs.object.silhouettes import draw_source_silhouette
 from threedfs.params.evaluate import EvaluateParams
+from threedfs.params.evaluate_reconstruction import EvaluateReconstructionParams
 from threedfs.progress import Progress
-from threedfs.stages import evaluate
+from threedfs.stages import evaluate, evaluate_reconstruction
 from threedfs.types import Camera, Keyframe, Mesh, View
 
 SOURCE = (120, 160)
@@ -44,21 +45,40 @@ class Run:
     log: io.StringIO
 
     def score(self, **changes):
-        """Run the stage; return the figures by name, those of frames as mappings."""
-        params = changes.pop("params", EvaluateParams(surface_samples=2000))
-        metrics = self.folder / "metrics.csv"
-        job = Job(Progress("evaluate", self.log))
-        names = {"dataset": "box", "sequence": "ring", "method": "fused_sdf", "intrinsics": None}
-        names |= {"depth_scale": changes.pop("depth_scale", 1000.0), "depth_camera": changes.pop("depth_camera", None)}
-        evaluate.run(**{**self.inputs, **changes}, metrics=metrics, **names, params=params, job=job)
+        """Run both stages; return the figures by name, those of frames as mappings."""
+        given = {**self.inputs, "depth_scale": 1000.0, "depth_camera": None, "intrinsics": None, **changes}
+        shared = ("poses", "keyframes", "frames", "cameras_truth", "mesh_truth", "intrinsics")
+        calls = {
+            "reconstruction.csv": (evaluate_reconstruction, ("depth", "depth_truth", "depth_scale", "depth_camera")),
+            "metrics.csv": (evaluate, ("mesh", "masks", "masks_truth")),
+        }
+        params = {
+            "reconstruction.csv": changes.get("reconstruction", EvaluateReconstructionParams()),
+            "metrics.csv": changes.get("params", EvaluateParams(surface_samples=2000)),
+        }
         found = {}
-        for metric in read_metrics(metrics):
-            assert (metric.dataset, metric.sequence, metric.method) == ("box", "ring", "fused_sdf")
+        for name, (stage, own) in calls.items():
+            labels = {"dataset": "box", "sequence": "ring"}
+            labels |= {"method": "fused_sdf"} if stage is evaluate else {}
+            stage.run(
+                **{key: given[key] for key in (*shared, *own)},
+                **labels,
+                metrics=self.folder / name,
+                params=params[name],
+                job=Job(Progress("evaluate", self.log)),
+            )
+            self._gather(name, labels, found)
+        return found
+
+    def _gather(self, name, labels, found):
+        for metric in read_metrics(self.folder / name):
+            own = (metric.dataset, metric.sequence, metric.method)
+            assert own == (labels["dataset"], labels["sequence"], labels.get("method", ""))
             if metric.keyframe:
                 found.setdefault(metric.name, {})[metric.keyframe] = metric.value
             else:
+                assert metric.name not in found
                 found[metric.name] = metric.value
-        return found
 
 
 def box():

@@ -43,10 +43,15 @@ SIGNATURES = {
     "pixel_masks": ("labels keyframes poses frames", "silhouettes masks", "method"),
     "poisson": ("cloud support keyframes poses frames", "mesh silhouettes masks", ""),
     "object": ("field support keyframes poses frames semidense", "mesh volume silhouettes masks", "method"),
-    "evaluate": (
-        "poses keyframes mesh masks depth frames masks_truth cameras_truth mesh_truth depth_truth",
+    "evaluate_reconstruction": (
+        "poses keyframes depth frames cameras_truth mesh_truth depth_truth",
         "metrics",
-        "dataset sequence method intrinsics depth_scale depth_camera",
+        "dataset sequence intrinsics depth_scale depth_camera",
+    ),
+    "evaluate": (
+        "poses keyframes mesh masks frames masks_truth cameras_truth mesh_truth",
+        "metrics",
+        "dataset sequence method intrinsics",
     ),
     "depth_trial": (
         "undistorted keyframes edges poses masks_truth cameras_truth mesh_truth depth_truth",
@@ -54,7 +59,7 @@ SIGNATURES = {
         "keyframe depth_settings depth_scale depth_camera intrinsics",
     ),
     "depth_experiment": ("trials", "metrics", "dataset sequence"),
-    "collect": ("tables depth_tables", "metrics", ""),
+    "collect": ("tables", "metrics", ""),
 }
 """Inputs, outputs and wildcards of each stage: the contract between rules and stages."""
 

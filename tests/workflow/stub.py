@@ -33,8 +33,9 @@ def write(stage, inputs, outputs, names, params, job):
                     **given,
                 }
             )
-        elif path.name == "metrics.csv":
-            row = f"iou_mean,0.5,1,{names['dataset']},{names['sequence']},{names.get('method', 'depth/all')},"
+        elif path.suffix == ".csv":
+            method = {"evaluate": names.get("method"), "depth_experiment": "depth/all"}.get(stage, "")
+            row = f"iou_mean,0.5,1,{names['dataset']},{names['sequence']},{method},"
             text = f"name,value,unit,dataset,sequence,method,keyframe\n{row}\n"
         path.write_text(text[:10])
         time.sleep(PAUSE)

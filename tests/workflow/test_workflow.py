@@ -16,7 +16,7 @@ from threedfs.store.files import remove_abandoned
 
 RULES = (
     "render calibrate frames features poses undistort keyframes semidense edges depth consistency fuse_scene locate "
-    "fuse_object object evaluate collect all"
+    "fuse_object object evaluate_reconstruction evaluate collect all"
 ).split()
 FILMED = ("video.mp4", "cameras.json", "mesh.ply")
 
@@ -69,7 +69,8 @@ def test_changed_parameter_reruns_what_follows_and_flipped_back_nothing(finished
     (finished.folder / "other.yaml").write_text("depth: {iterations: 7}\n")
     done = jobs_done(finished.run("--configfile", "other.yaml"))
     assert done["depth"] == 2
-    assert set(done) == {"depth", "consistency", "fuse_scene", "locate", "fuse_object", "object", "evaluate"}
+    fused = {"consistency", "fuse_scene", "locate", "fuse_object", "object"}
+    assert set(done) == {"depth", *fused, "evaluate_reconstruction", "evaluate"}
     output = finished.run()
     assert jobs_done(output) == Counter()
     assert jobs_taken(output)["depth"] == 2
@@ -140,10 +141,11 @@ def test_rendered_sequences_of_one_take_are_filmed_once_and_bring_their_truth(pr
             stage, key = name.split("/")
             (record,) = (r for r in records(results, sequence) if r["stage"] == stage)
             assert record["inputs"][key] == expected
-        (record,) = (r for r in records(results, sequence) if r["stage"] == "evaluate")
-        assert record["inputs"]["cameras_truth"] == filmed["cameras.json"]
-        assert record["inputs"]["mesh_truth"] == filmed["mesh.ply"]
-        assert record["inputs"]["masks_truth"] is not None and record["inputs"]["depth_truth"] is not None
+        for stage, other in (("evaluate", "masks_truth"), ("evaluate_reconstruction", "depth_truth")):
+            (record,) = (r for r in records(results, sequence) if r["stage"] == stage)
+            assert record["inputs"]["cameras_truth"] == filmed["cameras.json"]
+            assert record["inputs"]["mesh_truth"] == filmed["mesh.ply"]
+            assert record["inputs"][other] is not None
     assert "Nothing to be done" in project.run("--configfile", "own.yaml")
 
 

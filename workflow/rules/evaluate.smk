@@ -1,4 +1,42 @@
-# 12: measure against the ground truth, where there is any.
+# 12: measure against the ground truth, where there is any: what all methods share, then each method's mesh and masks.
+
+
+rule evaluate_reconstruction:
+    input:
+        poses="results/{sequence}/02_poses/poses.json",
+        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
+        frames="results/{sequence}/01_frames/frames.zarr.zip",
+        cameras_truth=given("truth_cameras"),
+        mesh_truth=given("truth_mesh"),
+        depth_truth=given("truth_depth"),
+    output:
+        metrics="results/{sequence}/12_evaluate/reconstruction.csv",
+    log:
+        "results/{sequence}/logs/evaluate_reconstruction.log",
+    benchmark:
+        "results/{sequence}/benchmarks/evaluate_reconstruction.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 1
+    resources:
+        mem_mb=2000,
+    params:
+        code=code_of("evaluate_reconstruction"),
+        settings=settings_of("evaluate_reconstruction"),
+        seed=config["seed"],
+        folders=fingerprint_of("truth_cameras", "truth_depth"),
+        labels=lambda wildcards: {
+            "dataset": SEQUENCES[wildcards.sequence]["dataset"],
+            "sequence": wildcards.sequence,
+            "intrinsics": SEQUENCES[wildcards.sequence]["intrinsics"],
+            "depth_scale": SEQUENCES[wildcards.sequence]["depth_scale"],
+            "depth_camera": SEQUENCES[wildcards.sequence]["depth_camera"],
+        },
+    message:
+        "Measure poses and depth of {wildcards.sequence}."
+    script:
+        "../scripts/run_stage.py"
 
 
 rule evaluate:
@@ -7,12 +45,10 @@ rule evaluate:
         keyframes="results/{sequence}/03_keyframes/keyframes.json",
         mesh=mesh_of_method,
         masks="results/{sequence}/11_object/{method}/masks",
-        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
         frames="results/{sequence}/01_frames/frames.zarr.zip",
         masks_truth=given("truth_masks"),
         cameras_truth=given("truth_cameras"),
         mesh_truth=given("truth_mesh"),
-        depth_truth=given("truth_depth"),
     output:
         metrics="results/{sequence}/12_evaluate/{method}/metrics.csv",
     log:
@@ -28,13 +64,11 @@ rule evaluate:
         code=code_of("evaluate"),
         settings=settings_of("evaluate"),
         seed=config["seed"],
-        folders=fingerprint_of("truth_masks", "truth_cameras", "truth_depth"),
+        folders=fingerprint_of("truth_masks", "truth_cameras"),
         labels=lambda wildcards: {
             "dataset": SEQUENCES[wildcards.sequence]["dataset"],
             "sequence": wildcards.sequence,
             "intrinsics": SEQUENCES[wildcards.sequence]["intrinsics"],
-            "depth_scale": SEQUENCES[wildcards.sequence]["depth_scale"],
-            "depth_camera": SEQUENCES[wildcards.sequence]["depth_camera"],
         },
     message:
         "Measure {wildcards.sequence} by {wildcards.method}."
@@ -44,14 +78,19 @@ rule evaluate:
 
 rule collect:
     input:
-        tables=expand(
-            "results/{sequence}/12_evaluate/{method}/metrics.csv",
-            sequence=OBJECTS,
-            method=METHODS,
-        ),
-        depth_tables=expand(
-            "results/{sequence}/12_depth_experiment/metrics.csv", sequence=TRIED
-        ),
+        tables=[
+            *expand(
+                "results/{sequence}/12_evaluate/reconstruction.csv", sequence=OBJECTS
+            ),
+            *expand(
+                "results/{sequence}/12_evaluate/{method}/metrics.csv",
+                sequence=OBJECTS,
+                method=METHODS,
+            ),
+            *expand(
+                "results/{sequence}/12_depth_experiment/metrics.csv", sequence=TRIED
+            ),
+        ],
     output:
         metrics="results/metrics.csv",
     log:

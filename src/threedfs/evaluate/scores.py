@@ -38,7 +38,7 @@ class Scores:
     Attributes
     ----------
     metrics : tuple of Metric
-        Costs are those without a method.
+        Those without a method are of the sequence whatever the method: costs, poses, depth maps.
     datasets : mapping of str to str
         The data set of every sequence of the run, also of those that failed; its order is that of the tables.
     methods : tuple of str
@@ -70,7 +70,7 @@ class Scores:
 
     @cached_property
     def measured(self) -> frozenset[str]:
-        """Sequences with figures other than costs."""
+        """Sequences with figures of a method."""
         return frozenset(sequence for sequence, method, _ in self._values if method)
 
     def sequences(self, dataset: str) -> tuple[str, ...]:
@@ -84,13 +84,8 @@ class Scores:
         return tuple(dict.fromkeys(name.partition("@")[2] for name in named if "@" in name))
 
     def value(self, sequence: str, method: str, name: str) -> float | None:
-        """Return a figure, or None if there is none.
-
-        Without a method it is a cost, or what the first method tells that tells it.
-        """
-        methods = (method,) if method else ("", *self.methods)
-        found = (self._values.get((sequence, one, name)) for one in methods)
-        return next((value for value in found if value is not None), None)
+        """Return a figure, or None if there is none; without a method, one that all methods share."""
+        return self._values.get((sequence, method, name))
 
     def excuse(self, sequence: str, method: str) -> str:
         """Say why a sequence lacks a figure of a method: it failed, it is not finished, or nothing (empty).

@@ -31,7 +31,7 @@ class Column:
     form : str
         How it is written.
     method : str
-        Empty for costs, and for figures that are the same for all methods.
+        Empty for figures that all methods share.
     factor : float
         What the figure is multiplied by.
     """

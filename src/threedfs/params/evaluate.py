@@ -9,11 +9,8 @@ from threedfs.params.field import parameter
 
 @dataclass(frozen=True)
 class EvaluateParams:
-    """How results are scored; nothing but the figures depends on it."""
+    """How meshes and masks are scored; nothing but the figures depends on it."""
 
-    silhouette_erosion: int = parameter(
-        2, "border taken off the true object before depths are compared on it", unit="px", minimum=0, maximum=100
-    )
     surface_samples: int = parameter(
         50000, "points drawn on each surface to compare meshes, or to fit a cylinder", minimum=1000, maximum=10000000
     )

@@ -37,6 +37,7 @@ STAGES = (
     "object",
     "cut_object",
     "poisson",
+    "evaluate_reconstruction",
     "evaluate",
     "depth_trial",
     "depth_experiment",

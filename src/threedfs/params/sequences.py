@@ -35,12 +35,14 @@ def load_sequences(
     Raises
     ------
     UserError
-        If also the depth experiment names a sequence that cannot take part, or nothing is to be done with one.
+        If also the depth experiment names a sequence that cannot take part, nothing is to be done with one, or a truth
+        lacks the cameras that say where it lies.
     """
     check_configuration(config, configuration_schema())
     sequences = list_sequences(config, home, lambda sentence: notes and notes.write(f"threedfs: {sentence}\n"))
     tried = config["depth_experiment"]["sequences"]
     _check_tried([name for name in tried if name not in (config["sequences"] or {})], sequences, tried)
+    _check_truth(sequences)
     return set_aside_missing({name: {**entry, "depth_experiment": name in tried} for name, entry in sequences.items()})
 
 
@@ -132,6 +134,16 @@ def _check_tried(unknown: list[str], sequences: Mapping[str, dict[str, Any]], tr
                 f"sequences.{name}: expected its name in depth_experiment.sequences, as object: false leaves nothing "
                 "else to do, found it missing; add it there."
             )
+
+
+def _check_truth(sequences: Mapping[str, dict[str, Any]]) -> None:
+    for name, entry in sequences.items():
+        for what in ("mesh", "depth"):
+            if entry[f"truth_{what}"] is not None and entry["truth_cameras"] is None:
+                raise UserError(
+                    f"sequences.{name}.truth.{what}: expected truth.cameras beside it, found none; they tell where "
+                    f"{entry[f'truth_{what}']} lies."
+                )
 
 
 def _skip_absent(sequences: Mapping[str, dict[str, Any]], note: Callable[[str], Any]) -> dict[str, dict[str, Any]]:

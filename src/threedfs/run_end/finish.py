@@ -141,11 +141,15 @@ def _write_all(folder: Path, suffix: str, texts: Mapping[str, str]) -> None:
 
 
 def _summarise(scores: Scores) -> str:
-    lines: dict[str, dict[str, float]] = defaultdict(dict)
+    own: dict[tuple[str, str], dict[str, float]] = defaultdict(dict)
     for row in scores.metrics:
-        if not row.keyframe and row.method in scores.methods:
-            lines[f"{row.sequence} {row.method}"][row.name] = row.value
-            lines[f"{row.sequence} {row.method}"]["seconds"] = scores.value(row.sequence, "", "seconds") or 0.0
+        if not row.keyframe:
+            own[row.sequence, row.method][row.name] = row.value
+    lines = {
+        f"{sequence} {method}": {**own[sequence, ""], **figures}
+        for (sequence, method), figures in list(own.items())
+        if method in scores.methods
+    }
     parts = [render_summary(lines)] if lines else []
     parts += [render_overlap(scores)] if len(scores.datasets) > 1 else []
     return "\n\n".join([*parts, _sum_up_costs(scores)])

@@ -8,9 +8,8 @@ from threedfs.job import Job
 from threedfs.store.files import write_atomically
 
 
-def run(*, tables: list[Path] | None, depth_tables: list[Path] | None, metrics: Path, job: Job) -> None:
-    """Concatenate tables of the same columns: of the objects, then of the depth experiment."""
-    tables = [*(tables or []), *(depth_tables or [])]
+def run(*, tables: list[Path], metrics: Path, job: Job) -> None:
+    """Concatenate tables of the same columns."""
     header, *_ = tables[0].read_text(encoding="utf-8").splitlines()
     rows = [line for table in tables for line in table.read_text(encoding="utf-8").splitlines()[1:]]
     write_atomically(metrics, "\n".join([header, *rows, ""]).encode())

@@ -18,13 +18,13 @@ from threedfs.depth.weights import edge_weight, measurement_weight
 from threedfs.evaluate.depth_experiment import draw_measurements
 from threedfs.evaluate.interpolation import interpolate_depth
 from threedfs.evaluate.masks import check_mask_size
-from threedfs.evaluate.pose_error import align_poses
 from threedfs.evaluate.rendering import MeshRenderer, filmed_pixels, image_points, sample_nearest
+from threedfs.evaluate.true_cameras import Filmed, relate_cameras
 from threedfs.frames.masks import match_masks
 from threedfs.io.depth_maps import read_edges
 from threedfs.io.depth_trials import DepthTrial, write_depth_trial
 from threedfs.io.frames import FrameStore, read_frames
-from threedfs.io.given_cameras import GivenCamera, read_given_cameras
+from threedfs.io.given_cameras import read_given_cameras
 from threedfs.io.images import read_mask
 from threedfs.io.keyframes import read_keyframe
 from threedfs.io.meshes import read_mesh
@@ -35,7 +35,6 @@ from threedfs.job import Job
 from threedfs.params.depth import DepthParams, matching_settings, solver_settings
 from threedfs.params.depth_trial import DepthTrialParams
 from threedfs.params.schema import make_params
-from threedfs.poses.given import find_cameras, state_size
 
 
 def run(
@@ -68,14 +67,11 @@ def run(
     frames, solved = read_frames(undistorted), read_poses(poses)
     entry = read_keyframe(keyframes, keyframe)
     dense = make_params(DepthParams, depth_settings)
-    true_cameras = _read_cameras(cameras_truth, intrinsics, frames)
-    common = [view for view in solved.views if view.name in true_cameras]
-    from_scene = align_poses(
-        [view.cam_from_world for view in common], [true_cameras[view.name].cam_from_world for view in common]
-    )
+    true_cameras = relate_cameras(read_given_cameras(cameras_truth, intrinsics), solved.views, frames)
+    scale = true_cameras.from_scene.scale
     pixels = filmed_pixels(entry.view.camera, solved.distortion, frames.source_shape)
-    filmed = true_cameras.get(keyframe)
-    colour = None if filmed is None else state_size(filmed.lens, frames.source_shape).camera
+    filmed = true_cameras.seen.get(keyframe)
+    colour = None if filmed is None else filmed[0].camera
     file = find_depth_images(depth_truth, [keyframe])[keyframe]
     image = read_true_depth(file, depth_scale, frames.source_shape, depth_camera, colour)
     truth = np.where(frames.valid, sample_nearest(image, pixels, np.nan), np.nan)
@@ -102,29 +98,23 @@ def run(
                 evidence.cost_volume,
                 evidence.candidates,
                 evidence.confidence,
-                truth / from_scene.scale,
+                truth / scale,
                 measurement_weight(variance, dense.measurement_weight),
                 smoothing,
                 **solver_settings(replace(dense, prior=prior)),
             )
-            maps[f"{prior}/{count}"] = from_scene.scale * solution.depth
+            maps[f"{prior}/{count}"] = scale * solution.depth
             job.progress.note(f"{prior} from {count} measurements: {sum(solution.steps)} steps")
-    on_object = _find_object(masks_truth, mesh_truth, keyframe, true_cameras, pixels, frames)
+    on_object = _find_object(masks_truth, mesh_truth, keyframe, filmed, pixels, frames)
     depth = np.stack(list(maps.values())).astype(np.float32)
     write_depth_trial(trial, DepthTrial(tuple(maps), depth, truth.astype(np.float32), on_object, drawn), job.header)
-
-
-def _read_cameras(path: Path, intrinsics: Sequence[float] | None, frames: FrameStore) -> dict[str, GivenCamera]:
-    cameras = read_given_cameras(path, intrinsics)
-    found = find_cameras(cameras, frames.names, frames.indices, numbered=frames.ordered)
-    return {frames.names[number]: camera for number, camera in found.items()}
 
 
 def _find_object(
     masks: Path | None,
     mesh: Path | None,
     keyframe: str,
-    cameras: Mapping[str, GivenCamera],
+    filmed: Filmed | None,
     pixels: np.ndarray,
     frames: FrameStore,
 ) -> np.ndarray:
@@ -135,9 +125,8 @@ def _find_object(
         mask = read_mask(files[stem])
         check_mask_size(mask, frames.source_shape, str(files[stem]))
         return sample_nearest(mask, pixels, False)
-    if mesh is not None and keyframe in cameras:
-        camera = cameras[keyframe]
-        lens = state_size(camera.lens, frames.source_shape)
-        points = image_points(lens.camera, (lens.k1, lens.k2), pixels)
-        return np.isfinite(MeshRenderer(read_mesh(mesh)).depth(camera.cam_from_world, points))
+    if mesh is not None and filmed is not None:
+        view, distortion = filmed
+        points = image_points(view.camera, distortion, pixels)
+        return np.isfinite(MeshRenderer(read_mesh(mesh)).depth(view.cam_from_world, points))
     return np.zeros(frames.shape, bool)
