@@ -164,6 +164,18 @@ def test_view_that_does_not_see_a_voxel_is_not_heard_where_another_sees_it():
     assert fuse(grid, [seeing, nearer], **settings)[0].item() == pytest.approx(0.0, abs=1e-5)
 
 
+def test_handicap_of_hidden_votes_grows_with_the_distance_behind_the_surface():
+    """Exact: none up to hidden_distance, all at the clip distance, in proportion between."""
+    grid = VoxelGrid(np.array([0.0, 0.0, 1.5]), 0.01, (1, 1, 1))
+    seeing = (FACING, np.full((81, 81), 1.55), np.ones((81, 81)))
+    for depth, hidden_distance, share in ((1.45, 0.02, 3 / 8), (1.45, 0.05, 0.0), (1.42, 0.0, 0.8), (1.38, 0.0, 1.0)):
+        behind = (FACING, np.full((81, 81), depth), np.ones((81, 81)))
+        vote = np.exp(-4.0 * share)
+        expected = (0.5 + vote * max(-1.0, (depth - 1.5) / 0.1)) / (1 + vote)
+        found = fuse(grid, [seeing, behind], hardness=0.0, hidden=4.0, hidden_distance=hidden_distance)[0].item()
+        assert found == pytest.approx(expected, abs=1e-5)
+
+
 def test_rejects_maps_of_another_size():
     """Rejection."""
     grid = VoxelGrid(np.zeros(3), 1.0, (1, 1, 1))

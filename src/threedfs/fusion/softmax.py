@@ -30,9 +30,11 @@ class SoftMaximum:
 
     Differs from the paper, where confidence is given: a vote of trust c enters Eq. 15 as
     exp(h S - distrust (1 - c)), so that a view that others contradict loses against them instead of carving; and a
-    vote on a voxel that lies farther behind the view's surface than the clip distance enters as
-    exp(h S - distrust (1 - c) - hidden), since the view does not see it. Then no high h is needed for views that see
-    a voxel to prevail, and with a low one it is their mean: a maximum takes the one that errs most. Trust
+    vote on a voxel that lies behind the view's surface, which the view does not see, enters as
+    exp(h S - distrust (1 - c) - hidden), with a handicap that grows from 0 at `hidden_distance` to all of it at the
+    clip distance: near the surface the vote tells where it lies, deeper only that something lies before it, which is
+    no evidence against a view that sees the voxel, as behind a thin part. Then no high h is needed for views that
+    see a voxel to prevail, and with a low one it is their mean: a maximum takes the one that errs most. Trust
     is the confidence times how squarely the view faces the surface (`facing`), smoothed (`trust_blur`); votes for
     space that other views leave free are trusted fully from 1 + `_FREE_RAMP` clip distances on. Without confidence
     every vote counts the same, as in the paper.
@@ -74,6 +76,7 @@ class SoftMaximum:
         distrust: float,
         discontinuity: float,
         hidden: float = 0.0,
+        hidden_distance: float = math.inf,
         facing: float = 0.0,
         trust_blur: float = 0.0,
         threads: int = 1,
@@ -85,6 +88,7 @@ class SoftMaximum:
         self._settings = (float(clip_distance), float(hardness), float(discontinuity))
         self._distrust = distrust
         self._hidden = float(hidden)
+        self._hidden_from = min(1.0, hidden_distance / clip_distance)
         self._facing = facing
         self._trust_blur = trust_blur
         self._threads = threads
@@ -134,6 +138,7 @@ class SoftMaximum:
             handicap,
             free,
             hidden,
+            self._hidden_from,
             *self._settings,
         )
 
@@ -189,7 +194,18 @@ def estimate_fusion_memory(grid_shape: tuple[int, int, int], image_shape: tuple[
 
 @njit(cache=True, parallel=True)
 def _add_view(
-    weighted, weight, seen, rays, inverse_depth, handicap, free_depth, hidden, clip_distance, hardness, discontinuity
+    weighted,
+    weight,
+    seen,
+    rays,
+    inverse_depth,
+    handicap,
+    free_depth,
+    hidden,
+    hidden_from,
+    clip_distance,
+    hardness,
+    discontinuity,
 ):
     nx, ny, nz = seen.shape
     for ix in prange(nx):
@@ -205,6 +221,8 @@ def _add_view(
                     penalty *= max(0.0, 1.0 - (distance - 1.0) / _FREE_RAMP)
                 elif distance < -1.0:
                     penalty += hidden
+                elif distance < -hidden_from:
+                    penalty += hidden * (-distance - hidden_from) / (1.0 - hidden_from)
                 distance = min(1.0, max(-1.0, distance))
                 # The exponent is shifted by h so that it never grows above 0; the ratio stays the same.
                 vote = math.exp(hardness * (distance - 1.0) - penalty)

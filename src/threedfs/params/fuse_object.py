@@ -12,6 +12,14 @@ from threedfs.params.fusion import FusionSettings
 class FuseObjectParams(FusionSettings):
     """How the object is fused on its own grid."""
 
+    hidden_distance: float = parameter(
+        2.0,
+        "distance behind a view's surface from which the handicap of votes on voxels that the view does not see grows, "
+        "up to hidden at the clip distance: what is behind a thin part is seen by other views; acts with consistency "
+        "weighting",
+        unit="voxel",
+        minimum=0.0,
+    )
     thickness_share: float = parameter(
         0.25,
         "largest clip distance as a share of the object's thickness: the field of a thin object must reach -1 inside; "

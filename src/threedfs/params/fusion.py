@@ -45,8 +45,8 @@ class FusionSettings:
     )
     hidden: float = parameter(
         12.0,
-        "handicap of a vote on a voxel farther behind a view's surface than the clip distance, which the view does not "
-        "see (paper: none); acts with consistency weighting",
+        "handicap of a vote on a voxel at the clip distance behind a view's surface or farther, which the view does "
+        "not see (paper: none); acts with consistency weighting",
         minimum=0.0,
         maximum=100.0,
     )

@@ -37,6 +37,7 @@ def run(
         params.softmax_hardness,
         distrust=params.distrust,
         hidden=params.hidden,
+        hidden_distance=params.hidden_distance * grid.spacing,
         discontinuity=params.depth_discontinuity,
         facing=params.facing,
         trust_blur=params.trust_blur,
