@@ -90,5 +90,5 @@ def test_two_photos_of_one_name_are_refused(tmp_path, drawn, progress):
 
 
 def test_a_folder_without_photos_is_refused(tmp_path, progress):
-    with pytest.raises(UserError, match="none of 0 such files can be read"):
+    with pytest.raises(UserError, match=r"none of 0 such files can be read\.$"):
         scan_photos(tmp_path, progress)

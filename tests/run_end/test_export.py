@@ -39,6 +39,6 @@ def test_height_that_is_none_is_refused(results, height):
 def test_format_that_is_not_known_and_mesh_that_is_not_there_are_refused(results):
     with pytest.raises(UserError, match=r"ball\.dwg: expected a file that ends in"):
         export(results, "40", results / "ball.dwg")
-    with pytest.raises(UserError, match=r"poisson.*expected a mesh file, found none"):
+    with pytest.raises(UserError, match=r"poisson.*expected the mesh of a run, found none"):
         export(results, "40", results / "ball.stl", "poisson")
     assert not list(results.glob("ball.*"))

@@ -18,6 +18,7 @@ from threedfs.params.volumetric_cut import VolumetricCutParams
 from threedfs.segment.energy import OBJECT
 from threedfs.segment.gather import GatherRule, gather_images, gather_voxels
 from threedfs.segment.hull import fit_masks
+from threedfs.segment.initialise import UNDECIDED
 from threedfs.segment.joint import CutRule, segment_jointly
 from threedfs.segment.outline import draw_voxels
 from threedfs.segment.refine import RefineRule, refine_mask
@@ -179,6 +180,7 @@ def test_masks_carve_and_fill_a_field():
         height > 0,
         truth,
         scene.views,
+        scene.valid,
         scene.grid,
         ramp=5,
         tolerance=0,
@@ -202,7 +204,7 @@ def test_a_rim_of_the_masks_raises_no_peak_over_a_flat_object():
     drawn = draw_voxels(solid, scene.grid, scene.views)
     wide = {name: ndimage.binary_dilation(mask, iterations=2) for name, mask in drawn.items()}
     fitted, filled = fit_masks(
-        sdf, solid, height > 0, wide, scene.views, scene.grid, ramp=5, tolerance=0.1, least_views=2
+        sdf, solid, height > 0, wide, scene.views, scene.valid, scene.grid, ramp=5, tolerance=0.1, least_views=2
     )
     assert filled.any() and (fitted[filled] < 0).all()
     assert height[filled].max() < 0.06 + 4 * scene.grid.spacing
@@ -214,9 +216,35 @@ def test_masks_that_fit_leave_a_field_alone():
     solid = (scene.sdf < 0) & (height > 0)
     wide = {name: ndimage.binary_dilation(mask, iterations=2) for name, mask in truth.items()}
     fitted, _ = fit_masks(
-        scene.sdf, solid, height > 0, wide, scene.views, scene.grid, ramp=5, tolerance=0, least_views=99
+        scene.sdf, solid, height > 0, wide, scene.views, scene.valid, scene.grid, ramp=5, tolerance=0, least_views=99
     )
     assert np.array_equal((fitted < 0) & (height > 0), solid)
+
+
+def test_border_of_an_undistorted_image_is_no_outline():
+    """Images that end within the object: where nothing is seen, no mask carves."""
+    scene, truth = make_scene(views=12)
+    height = height_above(PLANE, scene.grid)
+    solid = (scene.sdf < 0) & (height > 0)
+    valid = scene.valid.copy()
+    valid[:, : valid.shape[1] // 2] = False
+    cropped = {name: mask & valid for name, mask in truth.items()}
+    settings = {"ramp": 5, "tolerance": 0, "least_views": 99}
+    whole, _ = fit_masks(scene.sdf, solid, height > 0, truth, scene.views, scene.valid, scene.grid, **settings)
+    half, _ = fit_masks(scene.sdf, solid, height > 0, cropped, scene.views, valid, scene.grid, **settings)
+    assert ((half < 0) & solid).sum() >= ((whole < 0) & solid).sum() > 0
+
+
+def test_links_tie_decided_superpixels_too_and_none_have_no_weight():
+    scene, _ = make_scene()
+    rule, _ = rules(replace(DEFAULTS, inner_level=-0.5))
+    for links in (True, False):
+        volume, bounds = gather_voxels(scene, replace(rule, surface_links=links))
+        images = gather_images(scene, volume, bounds, replace(rule, surface_links=links), np.random.default_rng(0))
+        linked = np.concatenate([evidence.decided[evidence.link_pairs[:, 0]] for evidence in images.values()])
+        assert (linked == UNDECIDED).any() and (linked != UNDECIDED).any()
+        images = gather_images(scene, volume, bounds, replace(rule, link_weight=0.0), np.random.default_rng(0))
+        assert all(len(evidence.link_pairs) == 0 for evidence in images.values())
 
 
 def test_voxels_alone_are_cut_by_colour():

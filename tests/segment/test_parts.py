@@ -115,8 +115,12 @@ def test_carving_by_one_mask_and_with_tolerance():
     for mask in masks.values():
         mask[20:28, 28:36] = True
     masks["b"][:, 36:42] = True
-    assert carve_unary(centres, views, masks, 0.0).tolist() == [0, 1, 0]
-    assert carve_unary(centres, views, masks, 0.5).tolist() == [0, 0, 0]
+    valid = {name: np.ones(CAMERA.shape, bool) for name in views}
+    assert carve_unary(centres, views, masks, valid, 0.0).tolist() == [0, 1, 0]
+    assert carve_unary(centres, views, masks, valid, 0.5).tolist() == [0, 0, 0]
+    # a pixel beyond the border of an undistorted image shows nothing, so nothing outside the mask
+    valid["a"] = masks["a"]
+    assert carve_unary(centres, views, masks, valid, 0.0).tolist() == [0, 0, 0]
 
 
 def test_voxel_pairs_have_an_open_end_each_once():

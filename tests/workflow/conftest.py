@@ -39,7 +39,7 @@ SIGNATURES = {
     "superpixels": ("undistorted keyframes edges", "superpixels", "keyframe"),
     "segment": ("field support keyframes undistorted superpixels semidense depth consistency", "labels", "cut"),
     "volumetric_cut": ("support keyframes undistorted semidense", "labels", ""),
-    "cut_object": ("labels field support keyframes poses frames", "mesh silhouettes masks", "method"),
+    "cut_object": ("labels field support keyframes poses undistorted", "mesh silhouettes masks", "method"),
     "pixel_masks": ("labels keyframes poses frames", "silhouettes masks", "method"),
     "poisson": ("cloud support keyframes poses frames", "mesh silhouettes masks", ""),
     "object": ("field support keyframes poses frames semidense", "mesh volume silhouettes masks", "method"),

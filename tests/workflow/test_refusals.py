@@ -41,6 +41,23 @@ CASES = {
         "methods: [gc_select]\nvariants: {a: {segment: {link_weight: -1}}}",
         "variants.a.segment.link_weight: expected at least 0.0, got -1",
     ),
+    "name of the run's own": (
+        "sequences: {tables: {source: config}}",
+        "expected other names than README.md, benchmarks",
+    ),
+    "cylinder of nothing": (
+        "evaluate: {cylinder_sequences: [mgu]}",
+        "evaluate.cylinder_sequences: expected names of sequences, got mgu, which is none of them",
+    ),
+    "space in a variant": (
+        "methods: [gc_select]\nvariants: {a b: {segment: {table: false}}}",
+        "'a b' cannot name a variant",
+    ),
+    "one method without brackets": (
+        "methods: tsdf",
+        "methods: expected a list, got 'tsdf'; write a list, as in [tsdf]",
+    ),
+    "file in place of keys": ("sequences: {mug: mug.mp4}", "sequences.mug: expected keys with values, got 'mug.mp4'; "),
     "negative seed": ("seed: -1", "seed: expected at least 0, got -1"),
 }
 

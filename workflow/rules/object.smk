@@ -72,7 +72,7 @@ rule cut_object:
         support="results/{sequence}/07_fusion/support.json",
         keyframes="results/{sequence}/03_keyframes/keyframes.json",
         poses="results/{sequence}/02_poses/poses.json",
-        frames="results/{sequence}/01_frames/frames.zarr.zip",
+        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
     output:
         mesh="results/{sequence}/11_object/{method}{variant}/mesh.ply",
         silhouettes="results/{sequence}/11_object/{method}{variant}/silhouettes.zarr.zip",

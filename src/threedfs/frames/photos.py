@@ -86,7 +86,7 @@ def scan_photos(folder: Path, progress: Progress) -> Photos:
     if not readable:
         raise UserError(
             f"{folder}: expected a video or a folder of photos ({', '.join(s[1:] for s in PHOTO_SUFFIXES)}), got a "
-            f"folder in which none of {len(files)} such files can be read."
+            f"folder in which none of {len(files)} such files can be read{_name_others(folder)}."
         )
     # The first in order of name wins a draw, so that the choice does not depend on the file system.
     shape = Counter(shapes[file] for file in readable).most_common(1)[0][0]
@@ -117,6 +117,13 @@ def _load(file):
             return np.array(ImageOps.exif_transpose(image).convert("RGB"))
     except _FAULTS:
         return None
+
+
+def _name_others(folder: Path) -> str:
+    """Name the endings of the files in a folder, and what to do about those of a phone."""
+    endings = sorted({file.suffix.lower()[1:] for file in folder.iterdir() if file.is_file() and file.suffix})
+    hint = "; convert them to jpg" if {"heic", "heif", "dng"} & set(endings) else ""
+    return f"; it has files that end in {', '.join(endings)}{hint}" if endings else ""
 
 
 def _say(shape):

@@ -1,4 +1,4 @@
-"""The plain maximum of the views' signed distances (3.3.1, Eq. 13)."""
+"""The plain maximum of the views' signed distances (3.3, Eq. 13)."""
 
 from __future__ import annotations
 
@@ -18,6 +18,9 @@ class HardMaximum:
     """Fuses the signed distances of views into their maximum, holding one view at a time.
 
     Right where all depth maps are; one view whose surface lies too far back carves the object away.
+
+    Differs from the paper as `SoftMaximum` always does: the maximum is over the views that see a voxel, and depth is
+    not interpolated across its discontinuities.
 
     Parameters
     ----------

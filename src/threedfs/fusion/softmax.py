@@ -52,8 +52,11 @@ class SoftMaximum:
     distrust : float
         Handicap of a vote without any confidence: what is taken off its exponent. Acts on views with confidence.
     hidden : float
-        Handicap of a vote on a voxel farther behind the view's surface than the clip distance, taken off its exponent.
+        Handicap of a vote on a voxel at the clip distance behind the view's surface or farther, taken off its exponent.
         Acts on views with confidence.
+    hidden_distance : float
+        Distance behind the view's surface, scene units, from which that handicap grows, in proportion; it comes all at
+        once at the clip distance if this is not below it. Acts on views with confidence.
     discontinuity : float
         Relative step of inverse depth between neighbouring pixels above which they lie on different surfaces.
     facing : float

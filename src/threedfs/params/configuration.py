@@ -34,6 +34,11 @@ NAMES_OF_SEQUENCES = ("sequences", "cylinder_sequences")
 SEQUENCE_NAME = r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$"
 
 _PATH = {"type": ["string", "null"]}
+_KINDS = {"array": "a list", "object": "keys with values"}
+_HINTS = {
+    "array": "; write a list, as in [{}]",
+    "object": "; write its keys, as in {{key: value}}, in a file of your own and give it by --configfile",
+}
 _DATASET = {"type": "string", "pattern": SEQUENCE_NAME}
 
 
@@ -158,9 +163,10 @@ def _explain(fault: jsonschema.ValidationError, start: str) -> str:
             missing = sorted(set(limit) - set(value))
             return f"{where}: expected the key {', '.join(missing)}, found none; see config/README.md."
         case "type":
-            expected = " or ".join([limit] if isinstance(limit, str) else limit)
-            hint = "; give nested values in a file with --configfile" if isinstance(value, str) else ""
-            return f"{where}: expected {expected}, got {value!r}{hint}."
+            kinds = [limit] if isinstance(limit, str) else limit
+            expected = " or ".join(_KINDS.get(kind, kind) for kind in kinds)
+            hint = next((_HINTS[kind] for kind in kinds if kind in _HINTS), "") if isinstance(value, str) else ""
+            return f"{where}: expected {expected}, got {value!r}{hint.format(value)}."
         case "enum":
             return f"{where}: expected one of {', '.join(map(str, limit))}, got {value!r}."
         case "minimum":
@@ -173,14 +179,14 @@ def _explain(fault: jsonschema.ValidationError, start: str) -> str:
         case "exclusiveMinimum":
             return f"{where}: expected more than {limit}, got {value}."
         case "pattern":
-            return explain_name(str(value), where)
+            return explain_name(str(value), where, "variant" if path.startswith("variants") else "sequence")
         case _:
             return f"{where}: {fault.message}; see config/README.md."
 
 
-def explain_name(name: str, where: str) -> str:
-    """Say why a name cannot name a sequence, and where it stands."""
+def explain_name(name: str, where: str, what: str = "sequence") -> str:
+    """Say why a name cannot name a sequence, or what else it is to name, and where it stands."""
     return (
-        f"{name!r} cannot name a sequence: expected letters, digits, dots, dashes and underscores only, "
+        f"{name!r} cannot name a {what}: expected letters, digits, dots, dashes and underscores only, "
         f"because results are put in a folder of that name (in {where})."
     )

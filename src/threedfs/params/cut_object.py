@@ -14,7 +14,7 @@ class CutObjectParams:
     dilation: int = parameter(
         2,
         "voxels by which the object's labels are enlarged before they cut its field",
-        equation="Sec. 3.5",
+        equation="Sec. 4.3",
         minimum=0,
         maximum=50,
     )

@@ -67,7 +67,7 @@ class DeformParams:
     )
     residual_scale: float = parameter(
         0.1,
-        "distance from the corrected zero level at which a point's weight halves",
+        "distance from the corrected zero level at which a point's weight halves; acts with reweightings",
         unit="clip distance",
         exclusive_minimum=0.0,
     )

@@ -67,8 +67,9 @@ What the file names takes the place of the default, everything else stays. `pres
 the paper, `presets/quick.yaml` makes everything small; files can be given together, the last counts:
 `--configfile my.yaml config/presets/paper.yaml`. Sections are merged key by key, so a second file adds its sequences
 to those of the first; lists and single values are replaced. `benchmark.yaml` is the whole benchmark.
-One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`; keys without a dot in their name can be
-given so, parameters of stages only in a file.
+One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`. So can be given what is one word in `config.yaml`
+(`video`, `dataset`, `seed`, `store`, `'methods=[fused_sdf, tsdf]'`); the parameters of stages can not: write
+`depth: {iterations: 5}` into my.yaml.
 `datasets/` has files of sequences: the data sets that the project is measured on, and the layouts of published ones.
 
 An unknown key, a wrong type or a value out of range stops the run before it starts, with a sentence.
@@ -86,7 +87,7 @@ frame's number from 0 (`120.png`) or like the photo; a few are enough. Scores: `
     sequences:
       mug: {source: mug.mp4, truth: {masks: mug_masks}}
 
-A missing file or folder stops the run before it starts (a dry run, `-n`, does not look for it). With `--keep-going`
+A missing file or folder stops the run before it starts (a dry run, `-n`, looks for `video` only). With `--keep-going`
 its sequence fails at once and the others are finished, as with whatever else may go wrong in a sequence; the tables
 name it with the reason, and the exit status is not 0.
 

@@ -92,7 +92,7 @@ class SegmentParams(StandingSettings):
     )
     table_reach: float = parameter(
         1.0,
-        "the picture of the support surface goes so far beyond the object's box",
+        "the picture of the support surface goes so far beyond the object's box; acts with table",
         unit="longest side of the box",
         minimum=0.0,
         maximum=5.0,

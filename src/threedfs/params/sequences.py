@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -14,6 +14,8 @@ from threedfs.params.rendered import bring_render, find_films
 
 SEQUENCE_FILES = ("source", "cameras", "calibration", "truth_masks", "truth_cameras", "truth_mesh", "truth_depth")
 """What a sequence's entry names: files and folders that must be there."""
+
+_RUN_FILES = {"README.md", "benchmarks", "logs", "metrics.csv", "plots", "tables"}
 
 _DEPTH_SCALE = 1000.0  # levels of a true depth image in a metre: millimetres
 
@@ -40,8 +42,10 @@ def load_sequences(
     """
     check_configuration(config, configuration_schema())
     sequences = list_sequences(config, home, lambda sentence: notes and notes.write(f"threedfs: {sentence}\n"))
-    tried = config["depth_experiment"]["sequences"]
-    _check_tried([name for name in tried if name not in (config["sequences"] or {})], sequences, tried)
+    tried, named = config["depth_experiment"]["sequences"], {*sequences, *(config["sequences"] or {})}
+    _check_known("depth_experiment.sequences", tried, named)
+    _check_known("evaluate.cylinder_sequences", config["evaluate"]["cylinder_sequences"], named)
+    _check_tried(sequences, tried)
     _check_truth(sequences)
     return set_aside_missing({name: {**entry, "depth_experiment": name in tried} for name, entry in sequences.items()})
 
@@ -84,6 +88,12 @@ def list_sequences(
         if not re.match(SEQUENCE_NAME, name):
             raise UserError(explain_name(name, f"the file {config['video']}; rename it, or list it under sequences"))
         given = {name: {"source": config["video"]}}
+    taken = sorted(_RUN_FILES & set(given))
+    if taken:
+        raise UserError(
+            f"sequences: expected other names than {', '.join(sorted(_RUN_FILES))}, which the run itself writes in "
+            f"results, found {taken[0]}; rename it."
+        )
     films = find_films(given)
     sequences = {name: _flatten(bring_render(name, entry, films.get(name, name))) for name, entry in given.items()}
     sequences = sequences or {"sample": _sample(home)}
@@ -117,11 +127,13 @@ def set_aside_missing(sequences: Mapping[str, Mapping[str, Any]]) -> tuple[dict[
     return {name: dict(entry) for name, entry in {**sequences, **emptied}.items()}, missing
 
 
-def _check_tried(unknown: list[str], sequences: Mapping[str, dict[str, Any]], tried: list[str]) -> None:
+def _check_known(key: str, names: Sequence[str], known: Collection[str]) -> None:
+    unknown = [name for name in names if name not in known]
     if unknown:
-        raise UserError(
-            f"depth_experiment.sequences: expected names of sequences, got {', '.join(unknown)}, which is none of them."
-        )
+        raise UserError(f"{key}: expected names of sequences, got {', '.join(unknown)}, which is none of them.")
+
+
+def _check_tried(sequences: Mapping[str, dict[str, Any]], tried: list[str]) -> None:
     for name, entry in sequences.items():
         missing = [key for key in ("cameras", "truth_cameras", "truth_depth") if entry[key] is None]
         if name in tried and missing:

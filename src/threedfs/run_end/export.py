@@ -44,8 +44,12 @@ def export(sequence: Path, height: str, file: Path, method: str = "sdf_2d3d_voxe
         raise UserError(f"height: expected a positive number, the height of the object, got {height}.")
     if file.suffix.lower() not in _FORMATS:
         raise UserError(f"{file}: expected a file that ends in {', '.join(_FORMATS)}; rename it.")
-    mesh = read_mesh(sequence / "11_object" / method / "mesh.ply")
-    write_mesh(file, stand_up(mesh, read_support(sequence / "07_fusion" / "support.json").plane, size))
+    path = sequence / "11_object" / method / "mesh.ply"
+    if not path.is_file():
+        raise UserError(
+            f"{path}: expected the mesh of a run, found none; correct {sequence}, or run the sequence first."
+        )
+    write_mesh(file, stand_up(read_mesh(path), read_support(sequence / "07_fusion" / "support.json").plane, size))
 
 
 if __name__ == "__main__":

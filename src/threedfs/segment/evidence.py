@@ -28,7 +28,8 @@ class ImageEvidence:
     first : (count,) uint8
         First labels of all.
     outside : (count,) float64
-        Share of each superpixel's pixels whose depth lies outside the region of interest.
+        Share of each superpixel's pixels whose depth lies outside the object's box (Eq. 22). Differs from the paper:
+        there it is the region of interest, which holds much of the support too.
     pair_weight : (P,) float32
         Cost of different labels at the superpixels' pairs.
     link_pairs : (M, 2) int64

@@ -115,6 +115,10 @@ class Bounds:
 def gather_voxels(scene: Scene, rule: GatherRule) -> tuple[VoxelEvidence, Bounds]:
     """Find the object in the fused field; return its first labels and what bounds it.
 
+    Differs from the paper: voxels are above the support from `clearance` on, which follows the plane's noise (paper:
+    0.05 of the spread of its points); the object's foot below it is part of both estimates; and the under-estimate lies
+    within the component that is the object.
+
     Raises
     ------
     UserError
@@ -183,7 +187,7 @@ def gather_images(
         first = np.where(decided == UNDECIDED, np.where(guessed, OBJECT, BACKGROUND), decided).astype(np.uint8)
         points = backproject_map(view, scene.depth[name])
         outside = np.isfinite(scene.depth[name]) & ~((points >= scene.low) & (points <= scene.high)).all(axis=-1)
-        pairs, weight = _link(scene, volume, name, decided == UNDECIDED, points, rule)
+        pairs, weight = _link(scene, volume, name, points, rule)
         middle = view.cam_from_world[2] @ np.append((scene.low + scene.high) / 2, 1)
         evidence[name] = ImageEvidence(
             view,
@@ -201,8 +205,13 @@ def gather_images(
     return evidence
 
 
-def _link(scene, volume, name, is_open, points, rule):
-    """Return the links (M, 2) of a keyframe's open superpixels with open voxels, and their weights (M,)."""
+def _link(scene, volume, name, points, rule):
+    """Return the links (M, 2) of a keyframe's superpixels with open voxels, and their weights (M,); none of weight 0.
+
+    A superpixel that the trimap decides ties the voxels that it shows to its label.
+    """
+    if rule.link_weight == 0:
+        return np.empty((0, 2), np.int64), np.empty(0, np.float32)
     shown = scene.superpixels[name].index >= 0
     if rule.surface_links:
         shown &= (scene.confidence[name] > _CONFIRMED) & np.isfinite(scene.depth[name])
@@ -211,7 +220,7 @@ def _link(scene, volume, name, is_open, points, rule):
         shown &= np.isfinite(scene.semidense[name])
     rows, columns = np.nonzero(shown)
     pairs, share = link_voxels(scene.superpixels[name], points[rows, columns], rows, columns, scene.grid)
-    kept = is_open[pairs[:, 0]] & (volume.fixed.reshape(-1)[pairs[:, 1]] == UNDECIDED)
+    kept = volume.fixed.reshape(-1)[pairs[:, 1]] == UNDECIDED
     if rule.surface_links:
         near = scene.sdf.reshape(-1)[pairs[:, 1]]
         kept &= (near <= 0) & (near > -_SURFACE_LEVEL)

@@ -1,4 +1,4 @@
-"""First labels of voxels and superpixels, and which of them are fixed (Section 3.4.2)."""
+"""First labels of voxels and superpixels, and which of them are fixed (Sections 3.4.2, 3.4.3)."""
 
 from __future__ import annotations
 
@@ -14,6 +14,9 @@ UNDECIDED = 255
 def normalised_height(height: np.ndarray) -> np.ndarray:
     """Return the normalised distance of voxels from the support plane, in (0, 1), 0.5 on it (Eq. 24).
 
+    Differs from the paper: the spread that it is normalised by is that of the object's own grid, which reaches less far
+    below the plane than the paper's region of interest.
+
     Parameters
     ----------
     height : (nx, ny, nz) float32
@@ -24,6 +27,8 @@ def normalised_height(height: np.ndarray) -> np.ndarray:
 
 def fix_voxels(sdf: np.ndarray, normalised: np.ndarray, *, empty_level: float, deepest: float) -> np.ndarray:
     """Return the voxels' fixed labels (nx, ny, nz) uint8: far below the plane, and in empty space for certain.
+
+    Voxels that no view sees have the field of empty space, and are fixed as such.
 
     Parameters
     ----------

@@ -100,6 +100,7 @@ def segment_jointly(
     silhouettes, carved = _Average(), _Average()
     energies, swaps = [], []
     views = {name: evidence.view for name, evidence in images.items()}
+    valid = {name: evidence.superpixels.index >= 0 for name, evidence in images.items()}
     for iteration in range(rule.iterations):
         of_images = nodes.split(labels)
         model = _learn_colors(images, of_images, rule, model, rng, seed)
@@ -114,7 +115,7 @@ def segment_jointly(
             soft = {name: soften_silhouette(mask, images[name].silhouette_reach) for name, mask in drawn.items()}
             silhouettes.add(np.concatenate([images[name].superpixels.mean(share) for name, share in soft.items()]))
             masks = {name: images[name].superpixels.paint(of_images[name] == OBJECT) for name in images}
-            carved.add(carve_unary(nodes.open_centres, views, masks, rule.carve_tolerance))
+            carved.add(carve_unary(nodes.open_centres, views, masks, valid, rule.carve_tolerance))
         graph = nodes.connect(model, silhouettes.mean, carved.mean, rule)
         swapped = 0
         now = energy(graph, labels)

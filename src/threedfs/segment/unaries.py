@@ -48,24 +48,29 @@ def scene_unary(normalised: np.ndarray) -> np.ndarray:
 
 
 def carve_unary(
-    centres: np.ndarray, views: Mapping[str, View], masks: Mapping[str, np.ndarray], tolerance: float
+    centres: np.ndarray,
+    views: Mapping[str, View],
+    masks: Mapping[str, np.ndarray],
+    valid: Mapping[str, np.ndarray],
+    tolerance: float,
 ) -> np.ndarray:
     """Return the cost (N,) of the label object at voxels that project outside the object's masks (Eq. 27).
 
     Differs from the paper: a voxel is carved if more than a share `tolerance` of the views that show it project it
-    outside (paper: any); views whose image it leaves say nothing.
+    outside (paper: any); views that do not show it, as it leaves their image or its valid part, say nothing.
 
     Parameters
     ----------
     centres : (N, 3) float64
         World.
     views : mapping of str to View
-    masks : mapping of str to (H, W) bool
+    masks, valid : mapping of str to (H, W) bool
+        The object, and pixels that show the scene.
     tolerance : float
     """
     outside, shown = np.zeros(len(centres), np.int32), np.zeros(len(centres), np.int32)
     for name, view in views.items():
         row, column, kept = find_pixels(view, centres)
-        shown += kept
-        outside[kept] += ~masks[name][row, column]
+        shown[kept] += valid[name][row, column]
+        outside[kept] += (valid[name] & ~masks[name])[row, column]
     return (outside > tolerance * shown).astype(np.float32)

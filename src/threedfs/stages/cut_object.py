@@ -32,7 +32,7 @@ def run(
     support: Path,
     keyframes: Path,
     poses: Path,
-    frames: Path,
+    undistorted: Path,
     mesh: Path,
     silhouettes: Path,
     masks: Path,
@@ -48,15 +48,18 @@ def run(
             f"{labels}: expected voxels of the object, found none; the method {method} has nothing to mesh."
         )
     views = {name: entry.view for name, entry in read_keyframes(keyframes).items()}
-    if method != "gc_2d3d_voxel":
+    images = read_frames(undistorted)
+    if method != "gc_2d3d_voxel":  # the paper names no such step for volumetric_gc, whose table pieces would count
         voxels = largest_piece(voxels)
     if field is None:
         surface = surround_voxels(voxels, cut.grid)
     else:
-        surface = _cut_field(read_volume(field), cut, voxels, read_support(support).plane, views, params, job)
+        surface = _cut_field(
+            read_volume(field), cut, voxels, read_support(support).plane, views, images.valid, params, job
+        )
     write_mesh(mesh, surface)
     job.progress.note(f"{method}: {voxels.sum()} voxels, {len(surface.faces)} triangles")
-    distortion, source_shape = read_poses(poses).distortion, read_frames(frames).source_shape
+    distortion, source_shape = read_poses(poses).distortion, images.source_shape
     write_outlines(silhouettes, masks, surface, list(views.values()), distortion, source_shape, job.header)
 
 
@@ -66,10 +69,11 @@ def _cut_field(
     voxels: np.ndarray,
     plane: Plane,
     views: dict[str, View],
+    valid: np.ndarray,
     params: CutObjectParams,
     job: Job,
 ):
-    """Return the smoothed surface of the field inside the labels, slightly enlarged (Section 3.5)."""
+    """Return the smoothed surface of the field inside the labels, slightly enlarged (Sections 3.5, 4.3)."""
     grid, sdf = fused.grid, fused.sdf
     height = height_above(plane, grid)
     owned = grow_voxels(voxels, params.dilation)
@@ -81,6 +85,7 @@ def _cut_field(
             height > 0,
             cut.masks,
             views,
+            valid,
             grid,
             ramp=params.hull_ramp,
             tolerance=params.hull_tolerance,
