@@ -67,7 +67,7 @@ What the file names takes the place of the default, everything else stays. `pres
 the paper, `presets/quick.yaml` makes everything small; files can be given together, the last counts:
 `--configfile my.yaml config/presets/paper.yaml`. Sections are merged key by key, so a second file adds its sequences
 to those of the first; lists and single values are replaced. `benchmark.yaml` is the whole benchmark.
-One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`. So can be given what is one word in `config.yaml`
+One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`. What is one word in `config.yaml` can be given so
 (`video`, `dataset`, `seed`, `store`, `'methods=[fused_sdf, tsdf]'`); the parameters of stages can not: write
 `depth: {iterations: 5}` into my.yaml.
 `datasets/` has files of sequences: the data sets that the project is measured on, and the layouts of published ones.
@@ -98,7 +98,8 @@ Symbol and equation are those of the paper, equations counted in the order of it
 
 _KEYS = {
     "dataset": "name of the set, a column of `results/metrics.csv`; tables and plots are made for each set",
-    "video": "one video or folder of photos; the sequence gets the file's name",
+    "video": "one video or folder of photos; the sequence gets the file's name; given beside `sequences` it takes "
+    "their place",
     "sequences.<name>.source": "a video (mp4, mov) or a folder of photos (jpg, png, tif, bmp, webp) of one camera, "
     "zoom and orientation; those of another size are left out",
     "sequences.<name>.dataset": "its own set, in place of `dataset`: one file may hold several sets",
