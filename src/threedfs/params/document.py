@@ -67,8 +67,8 @@ What the file names takes the place of the default, everything else stays. `pres
 the paper, `presets/quick.yaml` makes everything small; files can be given together, the last counts:
 `--configfile my.yaml config/presets/paper.yaml`. Sections are merged key by key, so a second file adds its sequences
 to those of the first; lists and single values are replaced. `benchmark.yaml` is the whole benchmark.
-One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`. What is one word in `config.yaml` can be given so
-(`video`, `dataset`, `seed`, `store`, `'methods=[fused_sdf, tsdf]'`); the parameters of stages can not: write
+One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`. What is one word in `config.yaml` can be
+given so (`video`, `dataset`, `seed`, `store`, `'methods=[fused_sdf, tsdf]'`); the parameters of stages can not: write
 `depth: {iterations: 5}` into my.yaml.
 `datasets/` has files of sequences: the data sets that the project is measured on, and the layouts of published ones.
 
