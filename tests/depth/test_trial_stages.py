@@ -171,6 +171,9 @@ def test_scores_are_rows_of_the_tidy_table(made, tmp_path):
     error = depth - trial.truth
     assert own["depth_rmse", ""] == own["depth_rmse", "0"] == pytest.approx(np.sqrt((error**2).mean()), rel=1e-6)
     assert own["object_depth_rmse", ""] == pytest.approx(np.sqrt((error[:, :48] ** 2).mean()), rel=1e-6)
+    relative = 100 * np.abs(error / trial.truth)
+    assert own["depth_error_median", ""] == pytest.approx(np.median(relative), rel=1e-6)
+    assert own["object_depth_error_median", ""] == pytest.approx(np.median(relative[:, :48]), rel=1e-6)
     low, high = np.percentile(trial.truth[:, :48], [1, 99])
     near = (trial.truth >= low) & (trial.truth <= high)
     assert own["object_range_depth_rmse", ""] == pytest.approx(np.sqrt((error[near] ** 2).mean()), rel=1e-6)

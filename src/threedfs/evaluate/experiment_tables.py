@@ -83,7 +83,8 @@ def group_experiments(scores: Scores) -> dict[int, dict[str, str]]:
 def _means(scores: Scores, dataset: str, region: str, priors: Mapping[str, str], title: str) -> Table:
     columns = (
         Column("RMSE, unit of the truth", f"{region}_rmse", ".4f"),
-        Column("relative error, mean, %", f"{region}_error_mean", ".2f"),
+        Column("relative error, median, %", f"{region}_error_median", ".2f"),
+        Column("mean", f"{region}_error_mean", ".2f"),
         Column("pixels within 1 %, %", f"{region}_within_1", ".1f"),
         Column("within 10 %", f"{region}_within_10", ".1f"),
     )
