@@ -1,9 +1,10 @@
 """Draw the README's pictures from the results of a sequence.
 
-    python docs/make_pictures.py results/sample docs/pictures/sample.jpg
+    python docs/make_pictures.py results/sample docs/pictures/sample.jpg [MASKS_OF MESH_OF]
 
 Four keyframes side by side; from top to bottom the frame with the mask's outline, the depth (near is red), the
-normals of the depth, and the mesh as the same camera sees it.
+normals of the depth, and the mesh as the same camera sees it. Masks are those of gc_2d3d_pixel and the mesh that of
+sdf_2d3d_voxel where no methods are named.
 """
 
 from __future__ import annotations
@@ -60,12 +61,12 @@ def shade(mesh: Mesh, keyframe: Keyframe) -> np.ndarray:
     return np.repeat(grey[..., None], 3, axis=-1)
 
 
-def main(results: Path, picture: Path) -> None:
-    """Draw one picture."""
+def main(results: Path, picture: Path, masks: str = "gc_2d3d_pixel", surface: str = "sdf_2d3d_voxel") -> None:
+    """Draw one picture: the masks of one method, the mesh of another."""
     frames = read_frames(results / "02_poses/undistorted.zarr.zip")
     keyframes = read_keyframes(results / "03_keyframes/keyframes.json")
-    silhouettes = read_silhouettes(results / "11_object/gc_2d3d_pixel/silhouettes.zarr.zip")
-    mesh = read_mesh(results / "11_object/sdf_2d3d_voxel/mesh.ply")
+    silhouettes = read_silhouettes(results / f"11_object/{masks}/silhouettes.zarr.zip")
+    mesh = read_mesh(results / f"11_object/{surface}/mesh.ply")
     names = list(keyframes)
     columns = []
     for name in names[:: max(1, len(names) // COLUMNS)][:COLUMNS]:
@@ -85,4 +86,4 @@ def main(results: Path, picture: Path) -> None:
 
 
 if __name__ == "__main__":
-    main(Path(sys.argv[1]), Path(sys.argv[2]))
+    main(Path(sys.argv[1]), Path(sys.argv[2]), *sys.argv[3:])
