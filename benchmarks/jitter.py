@@ -1,6 +1,6 @@
 """How the zero-crossing correction stands wrong points and wrong poses: as configured, and as printed in the paper.
 
-    python benchmarks/jitter.py results/dragon results/books [--levels 0 0.25 0.5 1] [--plot docs/plots/jitter.svg]
+    python benchmarks/jitter.py results/dragon results/books [--levels 0 0.25 0.5 1] [--plot docs/pictures/jitter.svg]
 
 Takes the results of rendered sequences with `deformed_sdf`. Each keyframe's camera is moved at random by a share of
 the longest side of the object's box; the fused field is made again with these cameras, and every surface point is moved
