@@ -76,10 +76,16 @@ def find_visible(mesh: Mesh, samples: np.ndarray, filmed: list[Filmed]) -> np.nd
     return visible
 
 
+def find_film(results: Path) -> Path:
+    """Return the folder of the rendered truth; a twin with given poses has it in the folder of its take."""
+    own = results / "00_render"
+    return own if own.is_dir() else results.with_name(results.name.removesuffix("_posed")) / "00_render"
+
+
 def relate_truth(results: Path) -> TrueCameras:
     """Return the true cameras of a rendered sequence."""
     return relate_cameras(
-        read_given_cameras(results / "00_render/cameras.json", None),
+        read_given_cameras(find_film(results) / "cameras.json", None),
         read_poses(results / "02_poses/poses.json").views,
         read_frames(results / "01_frames/frames.zarr.zip"),
     )
@@ -87,10 +93,10 @@ def relate_truth(results: Path) -> TrueCameras:
 
 def measure(results: Path) -> tuple[int, float, float, float]:
     """Return the number of points on the object, their median distance, the share near, and the share covered."""
-    truth, mesh = relate_truth(results), read_mesh(results / "00_render/mesh.ply")
+    truth, mesh = relate_truth(results), read_mesh(find_film(results) / "mesh.ply")
     points, _ = read_oriented_points(results / "08_densify/points.zarr.zip")
     names = list(read_keyframes(results / "03_keyframes/keyframes.json"))
-    files = find_masks(results / "00_render/masks", names, numbered=True)
+    files = find_masks(find_film(results) / "masks", names, numbered=True)
     xyz = truth.from_scene.apply(points.xyz.astype(np.float64))
     filmed = [truth.seen[name] for name in names]
     on_object = xyz[find_object_points(points, xyz, filmed, [read_mask(files[name]) for name in names])]
