@@ -23,14 +23,9 @@ from matplotlib.figure import Figure
 
 from threedfs.evaluate.mesh_error import measure_mesh
 from threedfs.evaluate.plots import COLOURS
-from threedfs.evaluate.true_cameras import relate_cameras
-from threedfs.geometry.similarity import Similarity
-from threedfs.io.frames import read_frames
-from threedfs.io.given_cameras import read_given_cameras
 from threedfs.io.keyframes import read_keyframes, write_keyframes
 from threedfs.io.meshes import read_mesh
 from threedfs.io.oriented_points import read_oriented_points, write_oriented_points
-from threedfs.io.poses import read_poses
 from threedfs.io.volumes import read_support
 from threedfs.job import Job
 from threedfs.params.deform import DeformParams
@@ -38,6 +33,7 @@ from threedfs.params.fuse_object import FuseObjectParams
 from threedfs.params.object import ObjectParams
 from threedfs.params.schema import default_settings, make_params
 from threedfs.progress import Progress
+from threedfs.run_end.film import relate_film
 from threedfs.stages import deform, fuse_object
 from threedfs.stages import object as object_stage
 from threedfs.types import Keyframe, Mesh, OrientedPoints
@@ -62,16 +58,6 @@ def jitter_points(points: OrientedPoints, steps: np.ndarray, deviation: float, r
         total = np.bincount(points.seen_point, steps[points.seen_view, axis], len(moved))
         moved[:, axis] += total / np.maximum(points.sightings, 1)
     return replace(points, xyz=moved.astype(np.float32))
-
-
-def align_truth(results: Path) -> Similarity:
-    """Return truth from scene."""
-    truth = relate_cameras(
-        read_given_cameras(results / "00_render/cameras.json", None),
-        read_poses(results / "02_poses/poses.json").views,
-        read_frames(results / "01_frames/frames.zarr.zip"),
-    )
-    return truth.from_scene
 
 
 def measure(results: Path, folder: Path, level: float, corrections: Mapping[str, DeformParams]) -> list[float]:
@@ -107,7 +93,7 @@ def measure(results: Path, folder: Path, level: float, corrections: Mapping[str,
             params=params,
             job=job,
         )
-    truth, truth_from_scene = read_mesh(results / "00_render/mesh.ply"), align_truth(results)
+    truth, truth_from_scene = read_mesh(results / "00_render/mesh.ply"), relate_film(results).from_scene
     scores = []
     for name, field in fields.items():
         object_stage.run(

@@ -20,18 +20,16 @@ from scipy.spatial import cKDTree
 from threedfs.evaluate.mesh_error import bounding_diagonal
 from threedfs.evaluate.rendering import sample_nearest
 from threedfs.evaluate.surface import SurfaceDistance, sample_surface
-from threedfs.evaluate.true_cameras import Filmed, TrueCameras, relate_cameras
+from threedfs.evaluate.true_cameras import Filmed
 from threedfs.frames.masks import find_masks
 from threedfs.geometry.lens import Lens
 from threedfs.geometry.projection import inside
 from threedfs.geometry.raycast import RayCaster
-from threedfs.io.frames import read_frames
-from threedfs.io.given_cameras import read_given_cameras
 from threedfs.io.images import read_mask
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
 from threedfs.io.oriented_points import read_oriented_points
-from threedfs.io.poses import read_poses
+from threedfs.run_end.film import find_film, relate_film
 from threedfs.types import Mesh, OrientedPoints
 
 _NEAR = 0.01
@@ -43,7 +41,9 @@ _HIDDEN = 1e-4
 """Relative difference in depth up to which a ray has met the sample that it was sent to."""
 
 
-def find_object_points(points: OrientedPoints, xyz: np.ndarray, filmed: list[Filmed], masks: list[np.ndarray]):
+def find_object_points(
+    points: OrientedPoints, xyz: np.ndarray, filmed: list[Filmed], masks: list[np.ndarray]
+) -> np.ndarray:
     """Return (N,) bool, the points that fall on the true mask in at least half of the keyframes that see them.
 
     Parameters
@@ -76,24 +76,9 @@ def find_visible(mesh: Mesh, samples: np.ndarray, filmed: list[Filmed]) -> np.nd
     return visible
 
 
-def find_film(results: Path) -> Path:
-    """Return the folder of the rendered truth; a twin with given poses has it in the folder of its take."""
-    own = results / "00_render"
-    return own if own.is_dir() else results.with_name(results.name.removesuffix("_posed")) / "00_render"
-
-
-def relate_truth(results: Path) -> TrueCameras:
-    """Return the true cameras of a rendered sequence."""
-    return relate_cameras(
-        read_given_cameras(find_film(results) / "cameras.json", None),
-        read_poses(results / "02_poses/poses.json").views,
-        read_frames(results / "01_frames/frames.zarr.zip"),
-    )
-
-
 def measure(results: Path) -> tuple[int, float, float, float]:
     """Return the number of points on the object, their median distance, the share near, and the share covered."""
-    truth, mesh = relate_truth(results), read_mesh(find_film(results) / "mesh.ply")
+    truth, mesh = relate_film(results), read_mesh(find_film(results) / "mesh.ply")
     points, _ = read_oriented_points(results / "08_densify/points.zarr.zip")
     names = list(read_keyframes(results / "03_keyframes/keyframes.json"))
     files = find_masks(find_film(results) / "masks", names, numbered=True)

@@ -18,15 +18,12 @@ import numpy as np
 from make_pictures import shade
 from scipy.ndimage import map_coordinates
 
-from threedfs.evaluate.true_cameras import relate_cameras
 from threedfs.geometry.grid import voxel_from_world
 from threedfs.geometry.raycast import RayCaster
-from threedfs.io.frames import read_frames
-from threedfs.io.given_cameras import read_given_cameras
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
-from threedfs.io.poses import read_poses
 from threedfs.io.volumes import read_support, read_volume
+from threedfs.run_end.film import relate_film
 from threedfs.types import Mesh, Plane, VoxelGrid
 
 TILE = (420, 315)
@@ -46,11 +43,7 @@ def true_mesh(results: Path) -> Mesh | None:
     folder = results / "00_render"
     if not folder.is_dir():
         return None
-    truth_from_scene = relate_cameras(
-        read_given_cameras(folder / "cameras.json", None),
-        read_poses(results / "02_poses/poses.json").views,
-        read_frames(results / "01_frames/frames.zarr.zip"),
-    ).from_scene
+    truth_from_scene = relate_film(results).from_scene
     mesh = read_mesh(folder / "mesh.ply")
     back = (mesh.vertices - truth_from_scene.translation) @ truth_from_scene.rotation / truth_from_scene.scale
     return Mesh(back, mesh.faces)

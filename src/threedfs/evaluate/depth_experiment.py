@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from threedfs.errors import UserError
-from threedfs.evaluate.depth_error import DepthPairs, measure_depth, pool_pairs
+from threedfs.evaluate.depth_error import DepthError, DepthPairs, measure_depth, pool_pairs
 from threedfs.evaluate.figures import Figure
 
 _OBJECT_PERCENTILES = (1.0, 99.0)
@@ -113,9 +113,16 @@ def experiment_figures(
     unit : str
         Of the depths.
     """
-    figures = [figure for name, pairs in everywhere.items() for figure in _error_figures(pairs, unit, "depth", name)]
+    figures = [
+        figure
+        for name, pairs in everywhere.items()
+        for figure in _error_figures(measure_depth(pairs), unit, "depth", name)
+    ]
     for region, pairs in {"depth": pool_pairs(list(everywhere.values())), **regions}.items():
-        figures += _error_figures(pairs, unit, region)
+        error = measure_depth(pairs)
+        figures += _error_figures(error, unit, region)
+        if error is not None:
+            figures.append(Figure(f"{region}_error_median", 100 * error.median, "%"))
         for part in bin_errors(pairs, bin_width):
             interval = f"bin_{part.low:g}_{part.high:g}"
             figures.append(Figure(f"{region}_rmse_{interval}", part.rmse, unit))
@@ -123,8 +130,7 @@ def experiment_figures(
     return figures
 
 
-def _error_figures(pairs: DepthPairs, unit: str, region: str, keyframe: str = "") -> list[Figure]:
-    error = measure_depth(pairs)
+def _error_figures(error: DepthError | None, unit: str, region: str, keyframe: str = "") -> list[Figure]:
     if error is None:
         return []
     return [

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from threedfs.errors import UserError
-from threedfs.evaluate.depth_error import DepthPairs, measure_depth, pair_depths, pool_pairs
+from threedfs.evaluate.depth_error import DepthPairs, pair_depths, pool_pairs
 from threedfs.evaluate.depth_experiment import experiment_figures, find_object_depths
 from threedfs.evaluate.figures import Figure
 from threedfs.io.depth_trials import DepthTrial, read_depth_trial
@@ -58,11 +58,7 @@ def _score(trials: dict[str, DepthTrial], number: int, params: DepthExperimentPa
             "object_depth": _pool(trials, number, on_object),
             "object_range_depth": _pool(trials, number, near),
         }
-    figures = experiment_figures(everywhere, regions, params.bin_width, "truth unit")
-    for region, pairs in {"depth": pool_pairs(list(everywhere.values())), **regions}.items():
-        if error := measure_depth(pairs):
-            figures.append(Figure(f"{region}_error_median", 100 * error.median, "%"))
-    return figures
+    return experiment_figures(everywhere, regions, params.bin_width, "truth unit")
 
 
 def _pool(trials: dict[str, DepthTrial], number: int, where: dict[str, np.ndarray]) -> DepthPairs:
