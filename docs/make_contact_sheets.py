@@ -15,6 +15,7 @@ from pathlib import Path
 import av
 import cv2
 import numpy as np
+from make_pictures import write_title
 
 COLUMNS, WIDTH = 8, 1440
 
@@ -29,8 +30,7 @@ def draw_row(video: Path, name: str) -> np.ndarray:
     width = WIDTH // COLUMNS
     size = (width, round(images[0].shape[0] * width / images[0].shape[1]))
     row = np.hstack([cv2.resize(image, size, interpolation=cv2.INTER_AREA) for image in images])
-    for colour, thickness in (((0, 0, 0), 3), ((255, 255, 255), 1)):
-        cv2.putText(row, name, (6, 16), cv2.FONT_HERSHEY_SIMPLEX, 0.45, colour, thickness, cv2.LINE_AA)
+    write_title(row, name)
     return row
 
 

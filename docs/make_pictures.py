@@ -27,6 +27,13 @@ from threedfs.types import Keyframe, Mesh
 COLUMNS, WIDTH = 4, 1400
 
 
+def write_title(image: np.ndarray, title: str) -> None:
+    """Write a title into an image's upper left corner, on a dark ground."""
+    (width, height), _ = cv2.getTextSize(title, cv2.FONT_HERSHEY_SIMPLEX, 0.5, 1)
+    cv2.rectangle(image, (0, 0), (width + 12, height + 12), (30, 30, 30), -1)
+    cv2.putText(image, title, (6, height + 5), cv2.FONT_HERSHEY_SIMPLEX, 0.5, (255, 255, 255), 1, cv2.LINE_AA)
+
+
 def outline(image: np.ndarray, mask: np.ndarray) -> np.ndarray:
     """Draw the mask's outline in green."""
     contours, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)

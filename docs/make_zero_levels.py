@@ -15,7 +15,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
-from make_pictures import shade
+from make_pictures import shade, write_title
 from scipy.ndimage import map_coordinates
 
 from threedfs.geometry.grid import voxel_from_world
@@ -91,8 +91,7 @@ def fit(image: np.ndarray, title: str) -> np.ndarray:
     small = cv2.resize(image, None, fx=scale, fy=scale, interpolation=cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR)
     tile = np.full((TILE[1], TILE[0], 3), 255, np.uint8)
     tile[: small.shape[0], : small.shape[1]] = small
-    for colour, thickness in (((0, 0, 0), 3), ((255, 255, 255), 1)):
-        cv2.putText(tile, title, (8, 20), cv2.FONT_HERSHEY_SIMPLEX, 0.55, colour, thickness, cv2.LINE_AA)
+    write_title(tile, title)
     return tile
 
 
