@@ -5,7 +5,7 @@ import pytest
 
 from threedfs.errors import UserError
 from threedfs.fusion.fuse import limit_clip_distance
-from threedfs.fusion.softmax import SoftMaximum, estimate_fusion_memory
+from threedfs.fusion.softmax import SoftMaximum
 from threedfs.geometry.grid import cover_box, voxel_centres
 from threedfs.geometry.rigid import invert, look_at, make_transform
 from threedfs.types import Camera, View, VoxelGrid
@@ -181,14 +181,6 @@ def test_rejects_maps_of_another_size():
     grid = VoxelGrid(np.zeros(3), 1.0, (1, 1, 1))
     with pytest.raises(UserError, match="depth of view a"):
         fuse(grid, [(FACING, np.ones((80, 81)))])
-
-
-def test_memory_does_not_know_the_number_of_views():
-    """Exact: an estimate of grid and image alone, and at least what the accumulators hold."""
-    grid = VoxelGrid(np.zeros(3), 1.0, (20, 30, 40))
-    fused = SoftMaximum(grid, 1.0, 10.0, distrust=0.0, discontinuity=0.02)
-    held = fused._weighted.nbytes + fused._weight.nbytes + fused._seen.nbytes
-    assert estimate_fusion_memory(grid.shape, (480, 640)) > held + fused.result()[0].nbytes
 
 
 def test_view_looking_away_sees_nothing():

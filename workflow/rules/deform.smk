@@ -16,7 +16,7 @@ rule deform:
         "../../envs/threedfs.yaml"
     threads: THREADS
     resources:
-        mem_mb=3000,
+        mem_mb=memory_of("deform"),
     params:
         code=code_of("deform"),
         settings=settings_of("deform"),

@@ -42,7 +42,7 @@ rule fuse_scene:
         "../../envs/threedfs.yaml"
     threads: THREADS
     resources:
-        mem_mb=3000,
+        mem_mb=memory_of("fuse_scene", grid="fuse_scene"),
     params:
         code=code_of("fuse_scene"),
         settings=settings_of("fuse_scene"),
@@ -69,7 +69,7 @@ rule locate:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=2000,
+        mem_mb=memory_of("locate", grid="fuse_scene"),
     params:
         code=code_of("locate"),
         settings=settings_of("locate"),
@@ -96,7 +96,7 @@ rule fuse_object:
         "../../envs/threedfs.yaml"
     threads: THREADS
     resources:
-        mem_mb=3000,
+        mem_mb=memory_of("fuse_object"),
     params:
         code=code_of("fuse_object"),
         settings=settings_of("fuse_object"),
@@ -122,7 +122,7 @@ rule fuse_baseline:
         "../../envs/threedfs.yaml"
     threads: THREADS
     resources:
-        mem_mb=3000,
+        mem_mb=memory_of("fuse_baseline", grid="fuse_baseline"),
     params:
         code=code_of("fuse_baseline"),
         settings=settings_of("fuse_baseline"),

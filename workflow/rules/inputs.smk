@@ -1,6 +1,7 @@
 # Where rules find their inputs: what the configuration names, and one file per keyframe.
 
 from threedfs.params.configuration import JOINT_METHODS
+from threedfs.params.memory import estimate_memory
 
 FIELDS = {  # where each method that has one finds the object's field
     "fused_sdf": "07_fusion/object.zarr.zip",
@@ -105,10 +106,16 @@ def field_to_segment(wildcards):
     return f"results/{wildcards.sequence}/{FIELDS[method]}"
 
 
-def memory_to_segment(wildcards, input):
-    """Estimate the memory of a cut, MB: the graph, and for each keyframe its maps and its share of the table's picture."""
-    pixels = 0.75 * settings_of("frames")(wildcards)["longest_side"] ** 2
-    return int(1500 + len(input.depth) * (80e-6 * pixels + 30))
+def memory_of(stage, grid="fuse_object"):
+    """Return a resource function: the MB that a stage needs on the grid of another."""
+
+    def estimate(wildcards, input):
+        side = settings_of(grid)(wildcards)["longest_side"]
+        pixels = 0.75 * settings_of("frames")(wildcards)["longest_side"] ** 2
+        maps = input.get("depth", input.get("semidense", []))
+        return estimate_memory(stage, side, pixels, len(maps))
+
+    return estimate
 
 
 def field_to_cut(wildcards):

@@ -24,7 +24,7 @@ rule object:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=3000,
+        mem_mb=memory_of("object"),
     params:
         code=code_of("object"),
         settings=settings_of("object"),
@@ -87,7 +87,7 @@ rule cut_object:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=3000,
+        mem_mb=memory_of("cut_object"),
     params:
         code=code_of("cut_object"),
         settings=settings_of("cut_object"),

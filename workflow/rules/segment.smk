@@ -51,7 +51,7 @@ rule segment:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=memory_to_segment,
+        mem_mb=memory_of("segment"),
     params:
         code=code_of("segment"),
         settings=settings_of("segment"),
@@ -78,7 +78,7 @@ rule volumetric_cut:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=3000,
+        mem_mb=memory_of("volumetric_cut"),
     params:
         code=code_of("volumetric_cut"),
         settings=settings_of("volumetric_cut"),

@@ -182,19 +182,6 @@ def facing_cosine(camera: Camera, depth: np.ndarray) -> np.ndarray:
     return np.nan_to_num(-(normals_from_depth(camera, smooth) * rays).sum(-1))
 
 
-def estimate_fusion_memory(grid_shape: tuple[int, int, int], image_shape: tuple[int, int]) -> int:
-    """Estimate the bytes that fusion needs: two sums, the field and the count per voxel; the maps of one view.
-
-    Examples
-    --------
-    >>> estimate_fusion_memory((200, 200, 200), (480, 640)) // 10**6
-    182
-    """
-    bytes_per_voxel = 8 + 8 + 4 + 1
-    bytes_per_pixel = 8 * 6
-    return math.prod(grid_shape) * bytes_per_voxel + math.prod(image_shape) * bytes_per_pixel
-
-
 @njit(cache=True, parallel=True)
 def _add_view(
     weighted,
