@@ -2,7 +2,7 @@
 
 import pytest
 
-from threedfs.params.memory import estimate_memory
+from threedfs.memory import estimate_memory
 
 TABLETOP, BLOWTORCH = {"pixels": 640 * 480, "keyframes": 20}, {"pixels": 640 * 480, "keyframes": 67}
 

@@ -1,7 +1,7 @@
 # Where rules find their inputs: what the configuration names, and one file per keyframe.
 
 from threedfs.params.configuration import JOINT_METHODS
-from threedfs.params.memory import estimate_memory
+from threedfs.memory import estimate_memory
 
 FIELDS = {  # where each method that has one finds the object's field
     "fused_sdf": "07_fusion/object.zarr.zip",

@@ -21,7 +21,7 @@ class DensifyParams:
         choices=("auto", "cpu", "cuda"),
     )
     max_cost: float = parameter(
-        0.15,
+        0.13,
         "photometric error, (1 - NCC) / 2, above which a patch is left out; acts on our own matches",
         minimum=0.0,
         maximum=1.0,
@@ -29,12 +29,15 @@ class DensifyParams:
     window_radius: int = parameter(
         5, "patches of COLMAP's own match are (2 window_radius + 1) pixels wide", unit="px", minimum=1, maximum=32
     )
-    min_pixels: int = parameter(3, "pixels, of all keyframes together, that a point is made from", minimum=1)
+    min_pixels: int = parameter(2, "pixels, of all keyframes together, that a point is made from", minimum=1)
     max_depth_error: float = parameter(
-        0.01, "relative difference of depth up to which two keyframes see one point", exclusive_minimum=0.0, maximum=1.0
+        0.005,
+        "relative difference of depth up to which two keyframes see one point",
+        exclusive_minimum=0.0,
+        maximum=1.0,
     )
     max_reprojection_error: float = parameter(
-        2.0, "distance in the image up to which two keyframes see one point", unit="px", exclusive_minimum=0.0
+        1.0, "distance in the image up to which two keyframes see one point", unit="px", exclusive_minimum=0.0
     )
     max_normal_error: float = parameter(
         20.0, "angle between normals up to which two keyframes see one point", unit="degree", exclusive_minimum=0.0
