@@ -43,7 +43,15 @@ def test_tracks_are_the_points_that_two_of_the_frames_see():
 def test_crop_keeps_what_stands_on_the_plane_inside_the_box_with_its_sightings():
     xyz = np.array([(0, 0, 0.5), (0, 0, 0.001), (2, 0, 0.5), (0.5, 0.5, 0.9)], np.float32)
     points = OrientedPoints(xyz, xyz, np.zeros((4, 3), np.uint8), np.array([0, 0, 1, 3, 3]), np.array([1, 2, 1, 0, 5]))
-    cropped = crop_points(points, np.zeros(3), np.ones(3), Plane(np.array([0.0, 0, 1]), 0.0), 0.01)
+    cropped = crop_points(points, np.zeros(3), np.ones(3), Plane(np.array([0.0, 0, 1]), 0.0), 0.01, min_sightings=2)
     np.testing.assert_array_equal(cropped.xyz, xyz[[0, 3]])
     assert cropped.seen_point.tolist() == [0, 0, 1, 1]
     assert cropped.seen_view.tolist() == [1, 2, 0, 5]
+
+
+def test_crop_leaves_out_points_of_few_sightings():
+    xyz = np.full((2, 3), 0.5, np.float32)
+    points = OrientedPoints(xyz, xyz, np.zeros((2, 3), np.uint8), np.array([0, 0, 1, 1, 1]), np.array([1, 2, 0, 3, 5]))
+    cropped = crop_points(points, np.zeros(3), np.ones(3), Plane(np.array([0.0, 0, 1]), 0.0), 0.01, min_sightings=3)
+    assert cropped.seen_point.tolist() == [0, 0, 0]
+    assert cropped.seen_view.tolist() == [0, 3, 5]

@@ -8,11 +8,12 @@ from threedfs.types import OrientedPoints, Plane
 
 
 def crop_points(
-    points: OrientedPoints, low: np.ndarray, high: np.ndarray, plane: Plane, clearance: float
+    points: OrientedPoints, low: np.ndarray, high: np.ndarray, plane: Plane, clearance: float, min_sightings: int
 ) -> OrientedPoints:
-    """Keep the points in a box (corners low, high (3,), world) that lie over a plane by more than `clearance`."""
+    """Keep the points in a box (corners low, high (3,), world), over a plane by more than `clearance`, seen enough."""
     xyz = points.xyz.astype(np.float64)
     kept = ((xyz >= low) & (xyz <= high)).all(axis=1) & (plane.distance(xyz) > clearance)
+    kept &= points.sightings >= min_sightings
     renumbered = np.cumsum(kept) - 1
     seen = kept[points.seen_point]
     return OrientedPoints(

@@ -18,3 +18,8 @@ class PoissonParams:
         unit="longest side of the object's box",
         minimum=0.0,
     )
+    min_sightings: int = parameter(
+        3,
+        "keyframes that see a point for it to count: no field holds the surface against points that are wrong",
+        minimum=1,
+    )

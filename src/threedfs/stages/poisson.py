@@ -34,7 +34,8 @@ def run(
     """Read the points; write the mesh of those on the object, and its masks."""
     place = read_support(support)
     clearance = params.clearance * (place.high - place.low).max()
-    points = crop_points(read_oriented_points(cloud)[0], place.low, place.high, place.plane, clearance)
+    found, _ = read_oriented_points(cloud)
+    points = crop_points(found, place.low, place.high, place.plane, clearance, params.min_sightings)
     surface = keep_largest_shell(mesh_points(points, params.octree_depth))
     job.progress.note(f"{len(points.xyz)} points, {len(surface.faces)} triangles")
     write_mesh(mesh, surface)
