@@ -10,7 +10,19 @@ from threedfs.types import OrientedPoints, Plane
 def crop_points(
     points: OrientedPoints, low: np.ndarray, high: np.ndarray, plane: Plane, clearance: float, min_sightings: int
 ) -> OrientedPoints:
-    """Keep the points in a box (corners low, high (3,), world), over a plane by more than `clearance`, seen enough."""
+    """Keep the points in a box that lie over a plane and that enough keyframes see.
+
+    Parameters
+    ----------
+    points : OrientedPoints
+    low, high : (3,) float64
+        Corners of the box, world.
+    plane : Plane
+    clearance : float
+        Scene units; points no farther over the plane are left out.
+    min_sightings : int
+        Least number of keyframes that see a point.
+    """
     xyz = points.xyz.astype(np.float64)
     kept = ((xyz >= low) & (xyz <= high)).all(axis=1) & (plane.distance(xyz) > clearance)
     kept &= points.sightings >= min_sightings
