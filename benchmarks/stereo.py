@@ -38,6 +38,7 @@ def main() -> None:
             views[1 : 1 + options.views],
             [images[view.name] for view in views[1 : 1 + options.views]],
             np.full((height, width), np.nan),
+            np.ones((height, width), bool),
             near=0.6,
             far=1.8,
             rule=PatchRule(**{name: getattr(params, name) for name in RULE}),

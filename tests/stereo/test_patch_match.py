@@ -10,7 +10,7 @@ from threedfs.stereo.patch_match import PatchRule, guess_planes, match_patches
 RULE = PatchRule(radius=3, stride=1, likeness=40.0, variance_floor=1.0, least_variance=4.0, best_views=2)
 
 
-def match(images=None, rule=RULE, seed=0, far=2.5, levels=2, measured=None):
+def match(images=None, rule=RULE, seed=0, far=2.5, levels=2, measured=None, wanted=None):
     reference, *neighbours = scenes.views()
     images = images or scenes.grey_images()
     nothing = np.full(scenes.CAMERA.shape, np.nan)
@@ -20,6 +20,7 @@ def match(images=None, rule=RULE, seed=0, far=2.5, levels=2, measured=None):
         neighbours,
         [images[view.name] for view in neighbours],
         nothing if measured is None else measured,
+        np.ones(scenes.CAMERA.shape, bool) if wanted is None else wanted,
         near=0.4,
         far=far,
         rule=rule,
@@ -68,6 +69,17 @@ def test_missing_pixels_are_left_alone():
     found = match(images)
     assert np.isnan(found.inverse_depth[:, :23]).all()
     assert (found.cost[10:-10, 40:-10] < 0.05).mean() > 0.8
+
+
+def test_only_wanted_pixels_are_matched():
+    """Exact: a part of the image finds there what the whole image does, and says nothing elsewhere."""
+    wanted = np.zeros(scenes.CAMERA.shape, bool)
+    wanted[10:-10, 15:-15] = True
+    part, whole = match(wanted=wanted), match()
+    assert np.isnan(part.inverse_depth[~wanted]).all() and (part.cost[~wanted] == 1).all()
+    sure = wanted & (part.cost < 0.02) & (whole.cost < 0.02)
+    assert sure[wanted].mean() > 0.7
+    assert np.median(np.abs(part.inverse_depth / whole.inverse_depth - 1)[sure]) < 0.002
 
 
 def test_depth_stays_in_its_range():

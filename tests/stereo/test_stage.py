@@ -34,8 +34,10 @@ def matched(tmp_path_factory):
             undistorted=folder / "frames.zarr.zip",
             keyframes=folder / "keyframes.json",
             semidense=folder / "semidense.zarr.zip",
+            support=None,
             stereo=folder / "stereo" / f"{view.name}.zarr.zip",
             keyframe=view.name,
+            margin=0.1,
             params=StereoParams(levels=2, views=4),
             job=JOB,
         )

@@ -27,7 +27,7 @@ def write(stage, inputs, outputs, names, params, job):
             text = json.dumps(
                 {
                     "schema": "threedfs/keyframes/1",
-                    "needs_stereo": False,
+                    "needs_stereo": "stereo_angle=0.0" in given["params"],
                     "order": [*entries],
                     "keyframes": entries,
                     **given,

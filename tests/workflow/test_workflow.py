@@ -171,6 +171,8 @@ def test_methods_share_what_they_have_in_common(finished):
         for method in methods
     }
     assert len(set(fields.values())) == 5
+    patches = json.loads((finished.folder / "results/sample/05_stereo/000001.zarr.zip").read_text())
+    assert patches["inputs"]["support"] is not None and patches["names"] == {"keyframe": "000001", "margin": 0.1}
     assert "Nothing to be done" in finished.run("--configfile", "all.yaml")
 
 
@@ -219,6 +221,17 @@ def test_variants_cut_again_with_their_settings_and_get_a_table(finished):
     table = (finished.folder / "results/tables/variants.md").read_text()
     assert table.count("| no_table ") == table.count("| coarse ") == 2
     assert "@" not in (finished.folder / "results/tables/iou.md").read_text()
+
+
+def test_where_depth_needs_stereo_whole_images_are_matched_before_the_object_is_found(finished):
+    (finished.folder / "wide.yaml").write_text("methods: [deformed_sdf]\nkeyframes: {stereo_angle: 0}\n")
+    done = jobs_done(finished.run("--configfile", "wide.yaml"))
+    assert done["stereo"] == done["stereo_check"] == done["depth"] == 2
+    results = finished.folder / "results/sample"
+    patches, depth = (
+        json.loads((results / f"{name}/000001.zarr.zip").read_text()) for name in ("05_stereo", "06_depth")
+    )
+    assert patches["inputs"]["support"] is None and depth["inputs"]["stereo"] is not None
 
 
 def test_points_switched_off_need_no_stereo(finished):

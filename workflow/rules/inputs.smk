@@ -80,6 +80,13 @@ def if_wide(pattern):
     )
 
 
+def unless_wide(pattern):
+    """Return an input function: nothing, if the neighbours of a sequence's keyframes are far apart, or a file."""
+    return lambda wildcards: (
+        [] if read_keyframes(wildcards)["needs_stereo"] else pattern
+    )
+
+
 def results_of_method(method):
     """Return the names of what a method makes: those of pixels have no mesh."""
     has_mesh = method.partition("@")[0] not in PIXEL_CUTS

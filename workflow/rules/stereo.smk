@@ -1,4 +1,5 @@
-# 05: slanted patches of a keyframe that match in other views.
+# 05: slanted patches of a keyframe that match in other views: of the whole image where depth needs them, else of the
+# pixels around the object.
 
 
 rule stereo:
@@ -6,6 +7,7 @@ rule stereo:
         undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
         keyframes="results/{sequence}/03_keyframes/keyframes.json",
         semidense="results/{sequence}/04_semidense/{keyframe}.zarr.zip",
+        support=unless_wide("results/{sequence}/07_fusion/support.json"),
     output:
         stereo="results/{sequence}/05_stereo/{keyframe}.zarr.zip",
     log:
@@ -21,6 +23,7 @@ rule stereo:
         code=code_of("stereo"),
         settings=settings_of("stereo"),
         seed=config["seed"],
+        labels=lambda wildcards: {"margin": settings_of("densify")(wildcards)["margin"]},
     message:
         "Match patches of {wildcards.sequence} {wildcards.keyframe}."
     script:

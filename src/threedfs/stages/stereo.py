@@ -10,9 +10,11 @@ from threedfs.depth.zncc import prepare_grey
 from threedfs.io.depth_maps import StereoMap, read_semidense, write_stereo
 from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import read_keyframe
+from threedfs.io.volumes import read_support
 from threedfs.job import Job
 from threedfs.params.stereo import StereoParams
 from threedfs.stereo.patch_match import PatchRule, match_patches
+from threedfs.stereo.region import mask_box
 
 
 def run(
@@ -20,21 +22,33 @@ def run(
     undistorted: Path,
     keyframes: Path,
     semidense: Path,
+    support: Path | None,
     stereo: Path,
     keyframe: str,
+    margin: float,
     params: StereoParams,
     job: Job,
 ) -> None:
-    """Read a keyframe, its neighbours and semi-dense depth; write its patches."""
+    """Read a keyframe, its neighbours and semi-dense depth; write its patches, around the object if its place is given.
+
+    The place says only where patches are sought, not at what depth. Around: the box of the object and `margin` times
+    its longest side.
+    """
     frames = read_frames(undistorted)
     entry = read_keyframe(keyframes, keyframe)
     neighbours = entry.neighbours[: params.views]
+    wanted = np.ones(entry.view.camera.shape, bool)
+    if support:
+        place = read_support(support)
+        reach = margin * (place.high - place.low).max()
+        wanted = mask_box(entry.view, place.low - reach, place.high + reach)
     found = match_patches(
         entry.view,
         prepare_grey(frames.image(keyframe), frames.valid),
         neighbours,
         [prepare_grey(frames.image(view.name), frames.valid) for view in neighbours],
         read_semidense(semidense).inverse_depth.astype(np.float64),
+        wanted,
         near=entry.near,
         far=entry.far,
         rule=PatchRule(

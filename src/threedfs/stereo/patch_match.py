@@ -52,6 +52,7 @@ def match_patches(
     neighbours: Sequence[View],
     images: Sequence[np.ndarray],
     measured: np.ndarray,
+    wanted: np.ndarray,
     *,
     near: float,
     far: float,
@@ -74,6 +75,8 @@ def match_patches(
         What the patch is sought in, in the same form.
     measured : (H, W) float64
         Inverse depth to start from, NaN where there is none.
+    wanted : (H, W) bool
+        Pixels that are matched.
     near, far : float
         Depths between which patches are sought, scene units.
     rule : PatchRule
@@ -113,10 +116,12 @@ def match_patches(
             planes = _refine_grid(planes, shape)
         coarsest = level == levels - 1
         cost = np.full(shape, np.inf)
+        here = _sample(wanted, shape)
         for turn in range(max(1, rounds >> (levels - 1 - level))):
             for colour in (0, 1):
                 improve_planes(
                     small,
+                    here,
                     views,
                     comparison,
                     planes,
@@ -131,7 +136,7 @@ def match_patches(
                 )
         if level == 0:
             refine_depth(small, views, comparison, planes, cost)
-        note(f"level {level}: {100 * np.mean(cost < 0.1):.0f} % of the patches match")
+        note(f"level {level}: {100 * np.mean(cost[here] < 0.1):.0f} % of the patches match")
     planes[cost >= 1] = np.nan
     return PatchMatch(planes[..., 0], planes[..., 1:], np.minimum(cost, 1.0))
 
@@ -145,9 +150,9 @@ def guess_planes(measured: np.ndarray, near: float, far: float, rng: np.random.G
 
 
 def patch_offsets(radius: int, stride: int) -> np.ndarray:
-    """List the samples of a patch: (S, 2) int64 offsets along columns and rows."""
-    steps = np.arange(-radius, radius + 1, stride)
-    return np.stack(np.meshgrid(steps, steps), axis=-1).reshape(-1, 2)
+    """List the samples of a patch: (2, S) int32 offsets along columns and rows."""
+    steps = np.arange(-radius, radius + 1, stride, dtype=np.int32)
+    return np.stack(np.meshgrid(steps, steps)).reshape(2, -1)
 
 
 def neighbour_maps(reference: View, neighbours: Sequence[View]) -> tuple[np.ndarray, np.ndarray]:

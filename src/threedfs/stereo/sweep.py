@@ -15,12 +15,14 @@ _UNMATCHED = 0.6  # planes that cost more are not worth spreading
 
 
 @njit(cache=True)
-def improve_planes(grey, views, rule, planes, cost, depth_range, focal, spread, guess, scale, colour, seed):
+def improve_planes(grey, wanted, views, rule, planes, cost, depth_range, focal, spread, guess, scale, colour, seed):
     """Improve the planes of one colour of the checkerboard in place: by those of the other, and by small changes.
 
     Parameters
     ----------
     grey : (H, W) float32
+    wanted : (H, W) bool
+        Pixels whose planes are improved; those of the others may still be spread.
     views, rule : tuples
     planes, cost : (H, W, 3) and (H, W) float64
         Changed in place; cost is infinity where a plane was not compared yet.
@@ -38,12 +40,14 @@ def improve_planes(grey, views, rule, planes, cost, depth_range, focal, spread, 
     height, width = grey.shape
     offsets, falloff, variance_floor, least_variance, _ = rule
     least, most = depth_range
-    patch = (np.empty(len(offsets)), np.empty(len(offsets)))
+    patch = (np.empty(offsets.shape[1], np.float32), np.empty(offsets.shape[1], np.float32))
     costs = np.empty(len(views[0]))
     trial = np.empty(3)
     kept = np.empty(3)
     for v in range(height):
         for u in range((v + colour) % 2, width, 2):
+            if not wanted[v, u]:
+                continue
             deviation = weigh_patch(grey, u, v, offsets, falloff, variance_floor, least_variance, patch)
             if deviation == 0:
                 continue
@@ -90,7 +94,7 @@ def refine_depth(grey, views, rule, planes, cost):
     """Move each plane to the vertex of the parabola through its cost half a pixel of disparity to either side."""
     height, width = grey.shape
     offsets, falloff, variance_floor, least_variance, _ = rule
-    patch = (np.empty(len(offsets)), np.empty(len(offsets)))
+    patch = (np.empty(offsets.shape[1], np.float32), np.empty(offsets.shape[1], np.float32))
     costs = np.empty(len(views[0]))
     trial = np.empty(3)
     beside = np.empty(2)

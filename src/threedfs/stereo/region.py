@@ -1,0 +1,27 @@
+"""Where in an image a box lies."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.spatial import ConvexHull
+
+from threedfs.geometry.projection import pixel_grid, project
+from threedfs.types import View
+
+
+def mask_box(view: View, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Mark the pixels of a view whose line of sight meets a box: (H, W) bool; all, where it reaches behind the camera.
+
+    Parameters
+    ----------
+    view : View
+    low, high : (3,) float64
+        Opposite corners of the box, its sides along the axes of the world, scene units.
+    """
+    corners = np.array([np.where([i & 1, i & 2, i & 4], high, low) for i in range(8)])
+    places, depth = project(view, corners)
+    if depth.min() <= 0:
+        return np.ones(view.camera.shape, bool)
+    u, v = pixel_grid(view.camera)
+    edges = ConvexHull(places).equations
+    return np.all([across * u + down * v + offset <= 0 for across, down, offset in edges], axis=0)
