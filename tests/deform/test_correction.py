@@ -27,8 +27,10 @@ RULE = CorrectionRule(
     ridge=1.0,
     reweightings=0,
     residual_scale=0.1,
+    floor_residual_scale=0.3,
 )
 FLOOR = Plane(np.array([0.0, 0, 1]), 0.5)
+NO_FLOOR = SurfaceSamples(np.zeros((0, 3)), np.zeros(0), np.zeros(0))
 
 
 def biased_field(bias):
@@ -78,14 +80,18 @@ def test_corrected_zero_level_of_a_biased_sphere_is_within_a_tenth_of_a_voxel(bi
     """Exact: the bias is smooth, so the expansion can follow it."""
     sdf = biased_field(bias)
     assert surface_error(sdf).max() > 1
-    corrected = correct_zero_crossing(sdf, SEEN, GRID, take(sphere_points(), sdf), RULE, np.random.default_rng(0))
+    corrected = correct_zero_crossing(
+        sdf, SEEN, GRID, take(sphere_points(), sdf), NO_FLOOR, RULE, np.random.default_rng(0)
+    )
     assert surface_error(corrected).max() < 0.1
 
 
 def test_an_infinite_ridge_changes_nothing():
     sdf = biased_field(lambda d: GRID.spacing + 0 * d[..., 0])
     rule = replace(RULE, ridge=1e15)
-    corrected = correct_zero_crossing(sdf, SEEN, GRID, take(sphere_points(), sdf), rule, np.random.default_rng(0))
+    corrected = correct_zero_crossing(
+        sdf, SEEN, GRID, take(sphere_points(), sdf), NO_FLOOR, rule, np.random.default_rng(0)
+    )
     np.testing.assert_allclose(corrected, sdf, atol=1e-6)
 
 
@@ -95,8 +101,10 @@ def test_reweighting_forgives_points_off_the_surface():
     points = sphere_points()
     points.xyz[:300] *= 1 + 2 * GRID.spacing / RADIUS
     samples = take(points, sdf)
-    plain = correct_zero_crossing(sdf, SEEN, GRID, samples, RULE, np.random.default_rng(0))
-    robust = correct_zero_crossing(sdf, SEEN, GRID, samples, replace(RULE, reweightings=10), np.random.default_rng(0))
+    plain = correct_zero_crossing(sdf, SEEN, GRID, samples, NO_FLOOR, RULE, np.random.default_rng(0))
+    robust = correct_zero_crossing(
+        sdf, SEEN, GRID, samples, NO_FLOOR, replace(RULE, reweightings=10), np.random.default_rng(0)
+    )
     assert np.median(surface_error(plain)) > 0.25
     assert np.median(surface_error(robust)) < 0.1
 
@@ -106,7 +114,7 @@ def test_voxels_that_no_view_sees_keep_their_value():
     seen = SEEN.copy()
     seen[:25] = 0
     samples = take(sphere_points(), sdf)
-    corrected = correct_zero_crossing(sdf, seen, GRID, samples, RULE, np.random.default_rng(0))
+    corrected = correct_zero_crossing(sdf, seen, GRID, samples, NO_FLOOR, RULE, np.random.default_rng(0))
     np.testing.assert_array_equal(corrected[:25], sdf[:25])
     assert np.abs(corrected[25:] - sdf[25:]).max() > 0.1
 
@@ -115,7 +123,9 @@ def test_field_without_an_inner_level_is_corrected_too():
     """An object thinner than the clip distance never reaches -0.9."""
     sdf = np.maximum(biased_field(lambda d: GRID.spacing + 0 * d[..., 0]), -0.6)
     assert len(draw_anchors(sdf, SEEN, GRID, 300, np.random.default_rng(0))) == 300
-    corrected = correct_zero_crossing(sdf, SEEN, GRID, take(sphere_points(), sdf), RULE, np.random.default_rng(0))
+    corrected = correct_zero_crossing(
+        sdf, SEEN, GRID, take(sphere_points(), sdf), NO_FLOOR, RULE, np.random.default_rng(0)
+    )
     assert surface_error(corrected).max() < 0.1
 
 
@@ -123,7 +133,8 @@ def test_same_seed_same_field():
     sdf = biased_field(lambda d: GRID.spacing + 0 * d[..., 0])
     samples = take(sphere_points(), sdf)
     first, second, other = (
-        correct_zero_crossing(sdf, SEEN, GRID, samples, RULE, np.random.default_rng(seed)) for seed in (1, 1, 2)
+        correct_zero_crossing(sdf, SEEN, GRID, samples, NO_FLOOR, RULE, np.random.default_rng(seed))
+        for seed in (1, 1, 2)
     )
     np.testing.assert_array_equal(first, second)
     assert (first != other).any()

@@ -30,8 +30,8 @@ class CorrectionRule:
         Points of each kind that are drawn; anchors of each level set.
     ridge : float
     reweightings : int
-    residual_scale : float
-        Clip distances.
+    residual_scale, floor_residual_scale : float
+        Of surface points and of points on the support plane, clip distances.
     """
 
     rbf_width: float
@@ -42,6 +42,7 @@ class CorrectionRule:
     ridge: float
     reweightings: int
     residual_scale: float
+    floor_residual_scale: float
 
 
 def correct_zero_crossing(
@@ -49,6 +50,7 @@ def correct_zero_crossing(
     seen: np.ndarray,
     grid: VoxelGrid,
     samples: SurfaceSamples,
+    floor: SurfaceSamples,
     rule: CorrectionRule,
     rng: np.random.Generator,
     note: Callable[[str], None] = lambda message: None,
@@ -57,7 +59,8 @@ def correct_zero_crossing(
 
     Differs from the paper: a point counts by its trust, and less the farther the corrected field stays from zero
     there (Cauchy's weights, refitted `reweightings` times): a smooth correction cannot follow a wrong point among
-    right ones. With trust 1 and no reweighting it is Eq. 18. Always: voxels that no view sees keep their value, and
+    right ones. Points on the bare support plane count as surface points do. With trust 1, no reweighting and no such
+    points it is Eq. 18. Always: voxels that no view sees keep their value, and
     the sum is clipped to [-1, 1], which Eq. 16 is not.
 
     Parameters
@@ -67,7 +70,8 @@ def correct_zero_crossing(
     seen : (nx, ny, nz) uint8
         Voxels that no view sees keep their value.
     grid : VoxelGrid
-    samples : SurfaceSamples
+    samples, floor : SurfaceSamples
+        Points of the surface, of which `surface_points` are drawn, and on the support plane, all taken.
     rule : CorrectionRule
     rng : numpy.random.Generator
     note : callable
@@ -78,7 +82,11 @@ def correct_zero_crossing(
     (nx, ny, nz) float32, in [-1, 1]
     """
     chosen = rng.permutation(len(samples.xyz))[: rule.surface_points]
-    xyz, value, trust = samples.xyz[chosen], samples.sdf[chosen], samples.trust[chosen]
+    xyz, value, trust = (
+        np.concatenate([part[chosen], bare])
+        for part, bare in zip(vars(samples).values(), vars(floor).values(), strict=True)
+    )
+    scale = np.repeat([rule.residual_scale, rule.floor_residual_scale], [len(chosen), len(floor.xyz)])
     anchors = draw_anchors(sdf, seen, grid, rule.anchors, rng)
     centres = draw_controls(sdf, grid, rule.controls, rule.control_level, rng)
     basis = evaluate_at(np.concatenate([xyz, anchors]), centres, rule.rbf_width)
@@ -87,9 +95,13 @@ def correct_zero_crossing(
     coefficients = fit_ridge(basis, target, weight, rule.ridge)
     for _ in range(rule.reweightings):
         residual = basis[: len(xyz)] @ coefficients - target[: len(xyz)]
-        weight[: len(xyz)] = trust / (1 + (residual / rule.residual_scale) ** 2)
+        weight[: len(xyz)] = trust / (1 + (residual / scale) ** 2)
         coefficients = fit_ridge(basis, target, weight, rule.ridge)
-    left = np.abs(basis[: len(xyz)] @ coefficients + value)
-    note(f"field at {len(xyz)} points: median {np.median(np.abs(value)):.3f}, corrected {np.median(left):.3f}")
+    before = np.abs(value[: len(chosen)])
+    after = np.abs(basis[: len(chosen)] @ coefficients + value[: len(chosen)])
+    note(
+        f"field at {len(chosen)} points: median {np.median(before):.3f}, corrected {np.median(after):.3f}; "
+        f"{len(floor.xyz)} points on the support plane"
+    )
     corrected = sdf + evaluate_on_grid(grid, centres, coefficients, rule.rbf_width)
     return np.where(seen > 0, np.clip(corrected, -1, 1), sdf).astype(np.float32)

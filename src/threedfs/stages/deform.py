@@ -8,6 +8,7 @@ import numpy as np
 
 from threedfs.deform.correction import CorrectionRule, correct_zero_crossing
 from threedfs.deform.evidence import check_samples, take_points
+from threedfs.deform.floor import draw_floor
 from threedfs.io.oriented_points import read_oriented_points
 from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.job import Job
@@ -33,11 +34,24 @@ def run(*, field: Path, support: Path, cloud: Path, volume: Path, params: Deform
         )
         place = read_support(support)
         check_samples(samples, (place.low + place.high) / 2, place.plane)
+        rng = np.random.default_rng(job.seed)
+        floor = draw_floor(
+            fused.sdf,
+            fused.seen,
+            fused.grid,
+            place.plane,
+            height=params.floor_height * (place.high - place.low).max(),
+            reach=params.reach,
+            trust=params.floor_trust,
+            count=params.floor_points,
+            rng=rng,
+        )
         sdf = correct_zero_crossing(
             fused.sdf,
             fused.seen,
             fused.grid,
             samples,
+            floor,
             CorrectionRule(
                 rbf_width=params.rbf_width,
                 controls=params.controls,
@@ -47,8 +61,9 @@ def run(*, field: Path, support: Path, cloud: Path, volume: Path, params: Deform
                 ridge=params.ridge,
                 reweightings=params.reweightings,
                 residual_scale=params.residual_scale,
+                floor_residual_scale=params.floor_residual_scale,
             ),
-            np.random.default_rng(job.seed),
+            rng,
             job.progress.note,
         )
     write_volume(volume, Volume(fused.grid, sdf, fused.seen), job.header)
