@@ -10,7 +10,7 @@ _BYTES_PER_VOXEL = {
     "locate": 30,
     "fuse_object": 40,
     "fuse_baseline": 40,
-    "deform": 120,
+    "deform": 60,
     "object": 60,
     "cut_object": 150,
     "segment": 140,
@@ -22,7 +22,9 @@ _BYTES_PER_PIXEL = {"segment": 80, "volumetric_cut": 20}
 """Of every keyframe, which these stages hold all at once."""
 
 
-def estimate_memory(stage: str, longest_side: int, pixels: float = 0, keyframes: int = 0) -> int:
+def estimate_memory(
+    stage: str, longest_side: int, pixels: float = 0, keyframes: int = 0, rows: int = 0, columns: int = 0
+) -> int:
     """Estimate the memory of a stage on a voxel grid, MB.
 
     Parameters
@@ -33,6 +35,8 @@ def estimate_memory(stage: str, longest_side: int, pixels: float = 0, keyframes:
     pixels : float
         Of an image.
     keyframes : int
+    rows, columns : int
+        Of the matrix of a fit, which `deform` holds twice, beside two squares of its columns.
 
     Examples
     --------
@@ -42,4 +46,5 @@ def estimate_memory(stage: str, longest_side: int, pixels: float = 0, keyframes:
     2011
     """
     voxels = _BYTES_PER_VOXEL[stage] * longest_side**3
-    return int(_PROGRAM + (voxels + _BYTES_PER_PIXEL.get(stage, 0) * pixels * keyframes) / 1e6)
+    fit = 8 * 2 * (rows + columns) * columns
+    return int(_PROGRAM + (voxels + _BYTES_PER_PIXEL.get(stage, 0) * pixels * keyframes + fit) / 1e6)

@@ -27,7 +27,7 @@ RULE = CorrectionRule(
     ridge=1.0,
     reweightings=0,
     residual_scale=0.1,
-    floor_residual_scale=0.3,
+    plane_residual_scale=0.3,
 )
 FLOOR = Plane(np.array([0.0, 0, 1]), 0.5)
 NO_FLOOR = SurfaceSamples(np.zeros((0, 3)), np.zeros(0), np.zeros(0))

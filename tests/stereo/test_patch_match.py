@@ -72,7 +72,7 @@ def test_missing_pixels_are_left_alone():
 
 
 def test_only_wanted_pixels_are_matched():
-    """Exact: a part of the image finds there what the whole image does, and says nothing elsewhere."""
+    """Property: a part of the image finds there what the whole image does, and says nothing elsewhere."""
     wanted = np.zeros(scenes.CAMERA.shape, bool)
     wanted[10:-10, 15:-15] = True
     part, whole = match(wanted=wanted), match()

@@ -14,7 +14,7 @@ def meets_box(view: View, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     rays = backproject_map(view, np.ones(view.camera.shape)) - centre
     with np.errstate(divide="ignore"):
         ways = np.stack([(low - centre) / rays, (high - centre) / rays])
-    return ways.min(axis=0).max(axis=-1) <= np.minimum(ways.max(axis=0).min(axis=-1), np.inf)
+    return np.maximum(ways.min(axis=0).max(axis=-1), 0) <= ways.max(axis=0).min(axis=-1)
 
 
 def test_pixels_whose_rays_meet_the_box():

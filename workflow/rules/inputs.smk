@@ -87,6 +87,12 @@ def unless_wide(pattern):
     )
 
 
+def margin_of_points(wildcards):
+    """Return how far around the object patches are sought; 0 where they are sought in whole images."""
+    wide = read_keyframes(wildcards)["needs_stereo"]
+    return 0.0 if wide else settings_of("densify")(wildcards)["margin"]
+
+
 def results_of_method(method):
     """Return the names of what a method makes: those of pixels have no mesh."""
     has_mesh = method.partition("@")[0] not in PIXEL_CUTS
@@ -120,9 +126,20 @@ def memory_of(stage, grid="fuse_object"):
         side = settings_of(grid)(wildcards)["longest_side"]
         pixels = 0.75 * settings_of("frames")(wildcards)["longest_side"] ** 2
         maps = input.get("depth", input.get("semidense", []))
-        return estimate_memory(stage, side, pixels, len(maps))
+        return estimate_memory(
+            stage, side, pixels, len(maps), *fit_of(stage, wildcards)
+        )
 
     return estimate
+
+
+def fit_of(stage, wildcards):
+    """Return the rows and columns of the matrix that a stage fits by; none, if it fits nothing."""
+    if stage != "deform":
+        return 0, 0
+    settings = settings_of(stage)(wildcards)
+    points = settings["surface_points"] + settings["plane_points"]
+    return points + 2 * settings["anchors"], settings["controls"]
 
 
 def field_to_cut(wildcards):

@@ -30,7 +30,7 @@ class CorrectionRule:
         Points of each kind that are drawn; anchors of each level set.
     ridge : float
     reweightings : int
-    residual_scale, floor_residual_scale : float
+    residual_scale, plane_residual_scale : float
         Of surface points and of points on the support plane, clip distances.
     """
 
@@ -42,7 +42,7 @@ class CorrectionRule:
     ridge: float
     reweightings: int
     residual_scale: float
-    floor_residual_scale: float
+    plane_residual_scale: float
 
 
 def correct_zero_crossing(
@@ -50,7 +50,7 @@ def correct_zero_crossing(
     seen: np.ndarray,
     grid: VoxelGrid,
     samples: SurfaceSamples,
-    floor: SurfaceSamples,
+    bare: SurfaceSamples,
     rule: CorrectionRule,
     rng: np.random.Generator,
     note: Callable[[str], None] = lambda message: None,
@@ -70,7 +70,7 @@ def correct_zero_crossing(
     seen : (nx, ny, nz) uint8
         Voxels that no view sees keep their value.
     grid : VoxelGrid
-    samples, floor : SurfaceSamples
+    samples, bare : SurfaceSamples
         Points of the surface, of which `surface_points` are drawn, and on the support plane, all taken.
     rule : CorrectionRule
     rng : numpy.random.Generator
@@ -82,11 +82,10 @@ def correct_zero_crossing(
     (nx, ny, nz) float32, in [-1, 1]
     """
     chosen = rng.permutation(len(samples.xyz))[: rule.surface_points]
-    xyz, value, trust = (
-        np.concatenate([part[chosen], bare])
-        for part, bare in zip(vars(samples).values(), vars(floor).values(), strict=True)
-    )
-    scale = np.repeat([rule.residual_scale, rule.floor_residual_scale], [len(chosen), len(floor.xyz)])
+    xyz = np.concatenate([samples.xyz[chosen], bare.xyz])
+    value = np.concatenate([samples.sdf[chosen], bare.sdf])
+    trust = np.concatenate([samples.trust[chosen], bare.trust])
+    scale = np.repeat([rule.residual_scale, rule.plane_residual_scale], [len(chosen), len(bare.xyz)])
     anchors = draw_anchors(sdf, seen, grid, rule.anchors, rng)
     centres = draw_controls(sdf, grid, rule.controls, rule.control_level, rng)
     basis = evaluate_at(np.concatenate([xyz, anchors]), centres, rule.rbf_width)
@@ -101,7 +100,7 @@ def correct_zero_crossing(
     after = np.abs(basis[: len(chosen)] @ coefficients + value[: len(chosen)])
     note(
         f"field at {len(chosen)} points: median {np.median(before):.3f}, corrected {np.median(after):.3f}; "
-        f"{len(floor.xyz)} points on the support plane"
+        f"{len(bare.xyz)} points on the support plane"
     )
     corrected = sdf + evaluate_on_grid(grid, centres, coefficients, rule.rbf_width)
     return np.where(seen > 0, np.clip(corrected, -1, 1), sdf).astype(np.float32)

@@ -18,7 +18,9 @@ def evaluate_at(points: np.ndarray, centres: np.ndarray, width: float) -> np.nda
         Distance at which a basis function falls to 1/e, in the unit of the points.
     """
     square = (points**2).sum(1)[:, None] + (centres**2).sum(1) - 2 * points @ centres.T
-    return np.exp(-np.maximum(square, 0) / width**2)
+    np.maximum(square, 0, out=square)  # in place: the fit's matrices are the largest arrays of the stage
+    square /= -(width**2)
+    return np.exp(square, out=square)
 
 
 def evaluate_on_grid(grid: VoxelGrid, centres: np.ndarray, coefficients: np.ndarray, width: float) -> np.ndarray:

@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from threedfs.deform.bare_plane import draw_plane
 from threedfs.deform.correction import CorrectionRule, correct_zero_crossing
 from threedfs.deform.evidence import check_samples, take_points
-from threedfs.deform.floor import draw_floor
 from threedfs.io.oriented_points import read_oriented_points
 from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.job import Job
@@ -35,15 +35,15 @@ def run(*, field: Path, support: Path, cloud: Path, volume: Path, params: Deform
         place = read_support(support)
         check_samples(samples, (place.low + place.high) / 2, place.plane)
         rng = np.random.default_rng(job.seed)
-        floor = draw_floor(
+        bare = draw_plane(
             fused.sdf,
             fused.seen,
             fused.grid,
             place.plane,
-            height=params.floor_height * (place.high - place.low).max(),
+            height=params.bump_height * (place.high - place.low).max(),
             reach=params.reach,
-            trust=params.floor_trust,
-            count=params.floor_points,
+            trust=params.plane_trust,
+            count=params.plane_points,
             rng=rng,
         )
         sdf = correct_zero_crossing(
@@ -51,7 +51,7 @@ def run(*, field: Path, support: Path, cloud: Path, volume: Path, params: Deform
             fused.seen,
             fused.grid,
             samples,
-            floor,
+            bare,
             CorrectionRule(
                 rbf_width=params.rbf_width,
                 controls=params.controls,
@@ -61,7 +61,7 @@ def run(*, field: Path, support: Path, cloud: Path, volume: Path, params: Deform
                 ridge=params.ridge,
                 reweightings=params.reweightings,
                 residual_scale=params.residual_scale,
-                floor_residual_scale=params.floor_residual_scale,
+                plane_residual_scale=params.plane_residual_scale,
             ),
             rng,
             job.progress.note,

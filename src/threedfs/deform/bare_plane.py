@@ -12,7 +12,7 @@ _FREE = 3
 """A place is bare if the field is free from the height of a bump to so many times it."""
 
 
-def draw_floor(
+def draw_plane(
     sdf: np.ndarray,
     seen: np.ndarray,
     grid: VoxelGrid,
@@ -37,22 +37,26 @@ def draw_floor(
     plane : Plane
         The support surface.
     height : float
-        Of the highest bump, scene units: what reaches higher stands on the plane.
+        Of the highest bump, scene units: what reaches higher, or hides the space above, stands on the plane.
     reach : float
-        Largest |sdf| at a point.
+        Largest |sdf| at a point; at 1 the field is not known.
     trust : float
         Of each point.
     count : int
         Fewer where fewer voxels of the plane are bare.
     rng : numpy.random.Generator
     """
+    if count == 0:
+        return SurfaceSamples(np.zeros((0, 3)), np.zeros(0), np.zeros(0))
     rise = height_above(plane, grid)
-    layer = np.abs(rise) <= 0.51 * grid.spacing  # a little more than half: no gaps between layers
+    layer = (rise > -0.5 * grid.spacing) & (rise <= 0.5 * grid.spacing)
     voxels = np.asarray(grid.origin) + grid.spacing * np.argwhere(layer)
     xyz = voxels - rise[layer][:, None] * plane.normal
+    known = (seen > 0).astype(np.float32)
     value = sample_field(sdf, grid, xyz)
-    kept = (sample_field((seen > 0).astype(np.float32), grid, xyz) > 0.5) & (np.abs(value) <= reach)
+    kept = (sample_field(known, grid, xyz) > 0.5) & (np.abs(value) <= reach) & (np.abs(value) < 1)
     for level in np.arange(height, _FREE * height + grid.spacing / 2, grid.spacing):
-        kept &= ~(sample_field(sdf, grid, xyz + level * plane.normal) <= 0)
+        above = xyz + level * plane.normal
+        kept &= (sample_field(sdf, grid, above) > 0) & (sample_field(known, grid, above) > 0.5)
     chosen = rng.permutation(np.flatnonzero(kept))[:count]
     return SurfaceSamples(xyz[chosen], value[chosen], np.full(len(chosen), trust))

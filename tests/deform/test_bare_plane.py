@@ -2,9 +2,9 @@
 
 import numpy as np
 
+from threedfs.deform.bare_plane import draw_plane
 from threedfs.deform.correction import CorrectionRule, correct_zero_crossing
 from threedfs.deform.evidence import SurfaceSamples, sample_field
-from threedfs.deform.floor import draw_floor
 from threedfs.geometry.grid import cover_box, voxel_centres
 from threedfs.types import Plane
 
@@ -22,7 +22,7 @@ RULE = CorrectionRule(
     ridge=1.0,
     reweightings=5,
     residual_scale=0.1,
-    floor_residual_scale=0.5,
+    plane_residual_scale=0.5,
 )
 TOP = SurfaceSamples(np.array([[0.0, 0.0, 0.3]]), np.zeros(1), np.ones(1))
 
@@ -34,15 +34,15 @@ def field():
     return np.clip(np.minimum(z - np.where(x > 0.3, BUMP, 0), box) / CLIP, -1, 1).astype(np.float32)
 
 
-def floor(sdf, seen=SEEN, **changed):
+def draw(sdf, seen=SEEN, **changed):
     settings = {"height": 0.05, "reach": 0.9, "trust": 3.0, "count": 2000, "rng": np.random.default_rng(0), **changed}
-    return draw_floor(sdf, seen, GRID, TABLE, **settings)
+    return draw_plane(sdf, seen, GRID, TABLE, **settings)
 
 
 def test_points_lie_on_the_bare_plane():
     """Exact: on the plane, under the bump too, and none under the box; with the field that is there."""
     sdf = field()
-    found = floor(sdf)
+    found = draw(sdf)
     np.testing.assert_allclose(found.xyz[:, 2], 0, atol=1e-6)
     assert (np.abs(found.xyz[:, :2]).max(axis=1) > 0.2 - GRID.spacing).all()
     under = found.xyz[:, 0] > 0.3 + GRID.spacing
@@ -55,15 +55,25 @@ def test_points_lie_on_the_bare_plane():
 def test_what_rises_higher_than_a_bump_stands_on_the_plane():
     """Exact: a lower limit leaves the bump out; a count draws some; voxels that no view sees say nothing."""
     sdf = field()
-    assert (floor(sdf, height=0.02).xyz[:, 0] < 0.3 + GRID.spacing).all()
-    assert len(floor(sdf, count=100).xyz) == 100 and len(floor(sdf, count=0).xyz) == 0
-    assert len(floor(sdf, seen=0 * SEEN).xyz) == 0
+    assert (draw(sdf, height=0.02).xyz[:, 0] < 0.3 + GRID.spacing).all()
+    assert len(draw(sdf, count=100).xyz) == 100 and len(draw(sdf, count=0).xyz) == 0
+    assert len(draw(sdf, seen=0 * SEEN).xyz) == 0
+
+
+def test_what_nothing_is_known_of_is_not_bare():
+    """Exact: no view sees the space above a low solid, or the grid ends there: nothing says that it is a bump."""
+    sdf, height = field(), voxel_centres(GRID)[..., 2]
+    assert len(draw(sdf, seen=(height < 0.06).astype(np.uint8)).xyz) == 0
+    low = cover_box(np.array([-0.5, -0.5, -0.15]), np.array([0.5, 0.5, 0.02]), 60)
+    solid = np.full(low.shape, -0.5, np.float32)
+    settings = {"height": 0.05, "reach": 0.9, "trust": 3.0, "count": 9, "rng": np.random.default_rng(0)}
+    assert len(draw_plane(solid, np.ones(low.shape, np.uint8), low, TABLE, **settings).xyz) == 0
 
 
 def test_a_bump_is_laid_flat_and_the_object_kept():
     """Property: with one surface point, on top of the box, the table is level again, and the box as large as it was."""
     sdf = field()
-    corrected = correct_zero_crossing(sdf, SEEN, GRID, TOP, floor(sdf), RULE, np.random.default_rng(0))
+    corrected = correct_zero_crossing(sdf, SEEN, GRID, TOP, draw(sdf), RULE, np.random.default_rng(0))
     bump = np.stack(np.meshgrid(np.linspace(0.35, 0.45, 5), np.linspace(-0.4, 0.4, 5), [0.5 * BUMP]), -1).reshape(-1, 3)
     assert (sample_field(sdf, GRID, bump) < 0).all()
     assert (sample_field(corrected, GRID, bump) > 0).all()
