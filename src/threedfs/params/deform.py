@@ -79,7 +79,7 @@ class DeformParams:
     )
     bump_height: float = parameter(
         0.02,
-        "what rises no higher over the support plane, and is free above, is taken for the plane; acts with plane_points",
+        "what rises no higher over the support plane, free above, is taken for the plane; acts with plane_points",
         unit="longest side of the box",
         exclusive_minimum=0.0,
     )
