@@ -90,6 +90,8 @@ def measure(results: Path, folder: Path, level: float, corrections: Mapping[str,
             support=support,
             cloud=folder / "points.zarr.zip",
             volume=fields[name],
+            clearance=ObjectParams().clearance,
+            noise_clearance=ObjectParams().noise_clearance,
             params=params,
             job=job,
         )

@@ -4,7 +4,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from scipy.ndimage import label
 
+from threedfs.deform.bridges import keep_apart
 from threedfs.deform.correction import CorrectionRule, correct_zero_crossing
 from threedfs.deform.evidence import SurfaceSamples, check_samples, sample_gradient, take_points, widest_gap
 from threedfs.deform.rbf import evaluate_at, evaluate_on_grid
@@ -27,10 +29,8 @@ RULE = CorrectionRule(
     ridge=1.0,
     reweightings=0,
     residual_scale=0.1,
-    plane_residual_scale=0.3,
 )
 FLOOR = Plane(np.array([0.0, 0, 1]), 0.5)
-NO_FLOOR = SurfaceSamples(np.zeros((0, 3)), np.zeros(0), np.zeros(0))
 
 
 def biased_field(bias):
@@ -80,18 +80,14 @@ def test_corrected_zero_level_of_a_biased_sphere_is_within_a_tenth_of_a_voxel(bi
     """Exact: the bias is smooth, so the expansion can follow it."""
     sdf = biased_field(bias)
     assert surface_error(sdf).max() > 1
-    corrected = correct_zero_crossing(
-        sdf, SEEN, GRID, take(sphere_points(), sdf), NO_FLOOR, RULE, np.random.default_rng(0)
-    )
+    corrected = correct_zero_crossing(sdf, SEEN, GRID, take(sphere_points(), sdf), RULE, np.random.default_rng(0))
     assert surface_error(corrected).max() < 0.1
 
 
 def test_an_infinite_ridge_changes_nothing():
     sdf = biased_field(lambda d: GRID.spacing + 0 * d[..., 0])
     rule = replace(RULE, ridge=1e15)
-    corrected = correct_zero_crossing(
-        sdf, SEEN, GRID, take(sphere_points(), sdf), NO_FLOOR, rule, np.random.default_rng(0)
-    )
+    corrected = correct_zero_crossing(sdf, SEEN, GRID, take(sphere_points(), sdf), rule, np.random.default_rng(0))
     np.testing.assert_allclose(corrected, sdf, atol=1e-6)
 
 
@@ -101,10 +97,8 @@ def test_reweighting_forgives_points_off_the_surface():
     points = sphere_points()
     points.xyz[:300] *= 1 + 2 * GRID.spacing / RADIUS
     samples = take(points, sdf)
-    plain = correct_zero_crossing(sdf, SEEN, GRID, samples, NO_FLOOR, RULE, np.random.default_rng(0))
-    robust = correct_zero_crossing(
-        sdf, SEEN, GRID, samples, NO_FLOOR, replace(RULE, reweightings=10), np.random.default_rng(0)
-    )
+    plain = correct_zero_crossing(sdf, SEEN, GRID, samples, RULE, np.random.default_rng(0))
+    robust = correct_zero_crossing(sdf, SEEN, GRID, samples, replace(RULE, reweightings=10), np.random.default_rng(0))
     assert np.median(surface_error(plain)) > 0.25
     assert np.median(surface_error(robust)) < 0.1
 
@@ -114,7 +108,7 @@ def test_voxels_that_no_view_sees_keep_their_value():
     seen = SEEN.copy()
     seen[:25] = 0
     samples = take(sphere_points(), sdf)
-    corrected = correct_zero_crossing(sdf, seen, GRID, samples, NO_FLOOR, RULE, np.random.default_rng(0))
+    corrected = correct_zero_crossing(sdf, seen, GRID, samples, RULE, np.random.default_rng(0))
     np.testing.assert_array_equal(corrected[:25], sdf[:25])
     assert np.abs(corrected[25:] - sdf[25:]).max() > 0.1
 
@@ -123,9 +117,7 @@ def test_field_without_an_inner_level_is_corrected_too():
     """An object thinner than the clip distance never reaches -0.9."""
     sdf = np.maximum(biased_field(lambda d: GRID.spacing + 0 * d[..., 0]), -0.6)
     assert len(draw_anchors(sdf, SEEN, GRID, 300, np.random.default_rng(0))) == 300
-    corrected = correct_zero_crossing(
-        sdf, SEEN, GRID, take(sphere_points(), sdf), NO_FLOOR, RULE, np.random.default_rng(0)
-    )
+    corrected = correct_zero_crossing(sdf, SEEN, GRID, take(sphere_points(), sdf), RULE, np.random.default_rng(0))
     assert surface_error(corrected).max() < 0.1
 
 
@@ -133,8 +125,7 @@ def test_same_seed_same_field():
     sdf = biased_field(lambda d: GRID.spacing + 0 * d[..., 0])
     samples = take(sphere_points(), sdf)
     first, second, other = (
-        correct_zero_crossing(sdf, SEEN, GRID, samples, NO_FLOOR, RULE, np.random.default_rng(seed))
-        for seed in (1, 1, 2)
+        correct_zero_crossing(sdf, SEEN, GRID, samples, RULE, np.random.default_rng(seed)) for seed in (1, 1, 2)
     )
     np.testing.assert_array_equal(first, second)
     assert (first != other).any()
@@ -222,3 +213,24 @@ def test_points_on_one_side_are_refused():
     one_side = xyz[(xyz[:, 0] > 0) & (np.abs(xyz[:, 1]) < 0.5 * xyz[:, 0])]
     with pytest.raises(UserError, match="all of them within 53 degrees"):
         check_samples(samples_of(one_side), np.zeros(3), FLOOR)
+
+
+def test_solids_stay_apart():
+    """Exact: two slabs that grow into a gap of three voxels leave its middle open; one slab grows as it will."""
+    before, above = np.ones((12, 4, 4), np.float32), np.ones((12, 4, 4), bool)
+    before[:4], before[7:] = -1, -1
+    grown = before.copy()
+    grown[4:7] = -0.5
+    apart = keep_apart(before, grown, above)
+    labels, count = label(apart < 0)
+    assert count == 2 and (apart[:4] < 0).all() and (apart[7:] < 0).all()
+    assert set(np.unique(labels[4])) <= {0, 1} and ((apart[4:7] < 0).all(axis=(1, 2)).sum()) == 1
+    below = above.copy()
+    below[:6] = False  # where the first slab does not count, nothing is joined
+    np.testing.assert_array_equal(keep_apart(before, grown, below), grown)
+
+
+def test_a_lone_solid_grows_freely():
+    sdf = biased_field(lambda d: -1.5 * GRID.spacing + 0 * d[..., 0])
+    corrected = correct_zero_crossing(sdf, SEEN, GRID, take(sphere_points(), sdf), RULE, np.random.default_rng(0))
+    np.testing.assert_array_equal(keep_apart(sdf, corrected, SEEN > 0), corrected)

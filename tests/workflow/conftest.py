@@ -35,7 +35,7 @@ SIGNATURES = {
     "fuse_object": ("keyframes depth consistency support", "volume", ""),
     "fuse_baseline": ("keyframes depth support", "volume", "fusion"),
     "densify": ("undistorted keyframes poses points support stereo", "cloud", "cuda"),
-    "deform": ("field support cloud", "volume", ""),
+    "deform": ("field support cloud", "volume", "clearance noise_clearance"),
     "superpixels": ("undistorted keyframes edges", "superpixels", "keyframe"),
     "segment": ("field support keyframes undistorted superpixels semidense depth consistency", "labels", "cut"),
     "volumetric_cut": ("support keyframes undistorted semidense", "labels", ""),

@@ -21,6 +21,10 @@ rule deform:
         code=code_of("deform"),
         settings=settings_of("deform"),
         seed=config["seed"],
+        labels=lambda wildcards: {
+            name: settings_of("object")(wildcards)[name]
+            for name in ("clearance", "noise_clearance")
+        },
     message:
         "Correct the zero level of {wildcards.sequence}."
     script:

@@ -138,8 +138,7 @@ def fit_of(stage, wildcards):
     if stage != "deform":
         return 0, 0
     settings = settings_of(stage)(wildcards)
-    points = settings["surface_points"] + settings["plane_points"]
-    return points + 2 * settings["anchors"], settings["controls"]
+    return settings["surface_points"] + 2 * settings["anchors"], settings["controls"]
 
 
 def field_to_cut(wildcards):

@@ -30,8 +30,8 @@ class CorrectionRule:
         Points of each kind that are drawn; anchors of each level set.
     ridge : float
     reweightings : int
-    residual_scale, plane_residual_scale : float
-        Of surface points and of points on the support plane, clip distances.
+    residual_scale : float
+        Clip distances.
     """
 
     rbf_width: float
@@ -42,7 +42,6 @@ class CorrectionRule:
     ridge: float
     reweightings: int
     residual_scale: float
-    plane_residual_scale: float
 
 
 def correct_zero_crossing(
@@ -50,7 +49,6 @@ def correct_zero_crossing(
     seen: np.ndarray,
     grid: VoxelGrid,
     samples: SurfaceSamples,
-    bare: SurfaceSamples,
     rule: CorrectionRule,
     rng: np.random.Generator,
     note: Callable[[str], None] = lambda message: None,
@@ -59,8 +57,7 @@ def correct_zero_crossing(
 
     Differs from the paper: a point counts by its trust, and less the farther the corrected field stays from zero
     there (Cauchy's weights, refitted `reweightings` times): a smooth correction cannot follow a wrong point among
-    right ones. Points on the bare support plane count as surface points do. With trust 1, no reweighting and no such
-    points it is Eq. 18. Always: voxels that no view sees keep their value, and
+    right ones. With trust 1 and no reweighting it is Eq. 18. Always: voxels that no view sees keep their value, and
     the sum is clipped to [-1, 1], which Eq. 16 is not.
 
     Parameters
@@ -70,8 +67,7 @@ def correct_zero_crossing(
     seen : (nx, ny, nz) uint8
         Voxels that no view sees keep their value.
     grid : VoxelGrid
-    samples, bare : SurfaceSamples
-        Points of the surface, of which `surface_points` are drawn, and on the support plane, all taken.
+    samples : SurfaceSamples
     rule : CorrectionRule
     rng : numpy.random.Generator
     note : callable
@@ -82,10 +78,7 @@ def correct_zero_crossing(
     (nx, ny, nz) float32, in [-1, 1]
     """
     chosen = rng.permutation(len(samples.xyz))[: rule.surface_points]
-    xyz = np.concatenate([samples.xyz[chosen], bare.xyz])
-    value = np.concatenate([samples.sdf[chosen], bare.sdf])
-    trust = np.concatenate([samples.trust[chosen], bare.trust])
-    scale = np.repeat([rule.residual_scale, rule.plane_residual_scale], [len(chosen), len(bare.xyz)])
+    xyz, value, trust = samples.xyz[chosen], samples.sdf[chosen], samples.trust[chosen]
     anchors = draw_anchors(sdf, seen, grid, rule.anchors, rng)
     centres = draw_controls(sdf, grid, rule.controls, rule.control_level, rng)
     basis = evaluate_at(np.concatenate([xyz, anchors]), centres, rule.rbf_width)
@@ -94,13 +87,9 @@ def correct_zero_crossing(
     coefficients = fit_ridge(basis, target, weight, rule.ridge)
     for _ in range(rule.reweightings):
         residual = basis[: len(xyz)] @ coefficients - target[: len(xyz)]
-        weight[: len(xyz)] = trust / (1 + (residual / scale) ** 2)
+        weight[: len(xyz)] = trust / (1 + (residual / rule.residual_scale) ** 2)
         coefficients = fit_ridge(basis, target, weight, rule.ridge)
-    before = np.abs(value[: len(chosen)])
-    after = np.abs(basis[: len(chosen)] @ coefficients + value[: len(chosen)])
-    note(
-        f"field at {len(chosen)} points: median {np.median(before):.3f}, corrected {np.median(after):.3f}; "
-        f"{len(bare.xyz)} points on the support plane"
-    )
+    left = np.abs(basis[: len(xyz)] @ coefficients + value)
+    note(f"field at {len(xyz)} points: median {np.median(np.abs(value)):.3f}, corrected {np.median(left):.3f}")
     corrected = sdf + evaluate_on_grid(grid, centres, coefficients, rule.rbf_width)
     return np.where(seen > 0, np.clip(corrected, -1, 1), sdf).astype(np.float32)

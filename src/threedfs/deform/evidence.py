@@ -24,7 +24,7 @@ class SurfaceSamples:
     ----------
     xyz : (N, 3) float64, world
     sdf : (N,) float64, the field there
-    trust : (N,) float64, above 0; of surface points at most 1
+    trust : (N,) float64 in (0, 1]
     """
 
     xyz: np.ndarray

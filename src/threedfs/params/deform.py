@@ -71,26 +71,4 @@ class DeformParams:
         unit="clip distance",
         exclusive_minimum=0.0,
     )
-    plane_points: int = parameter(
-        4000,
-        "points drawn on the support plane where nothing stands, taken as surface points (paper: 0)",
-        minimum=0,
-        maximum=20000,
-    )
-    bump_height: float = parameter(
-        0.02,
-        "what rises no higher over the support plane, free above, is taken for the plane; acts with plane_points",
-        unit="longest side of the box",
-        exclusive_minimum=0.0,
-    )
-    plane_trust: float = parameter(
-        3.0,
-        "trust in a point on the support plane; a surface point has at most 1; acts with plane_points",
-        exclusive_minimum=0.0,
-    )
-    plane_residual_scale: float = parameter(
-        0.3,
-        "as residual_scale, for points on the support plane; acts with plane_points and reweightings",
-        unit="clip distance",
-        exclusive_minimum=0.0,
-    )
+    keep_apart: bool = parameter(True, "whether solids that the field holds apart stay so (paper: off)")

@@ -6,17 +6,32 @@ from pathlib import Path
 
 import numpy as np
 
-from threedfs.deform.bare_plane import draw_plane
+from threedfs.deform.bridges import keep_apart
 from threedfs.deform.correction import CorrectionRule, correct_zero_crossing
 from threedfs.deform.evidence import check_samples, take_points
 from threedfs.io.oriented_points import read_oriented_points
 from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.job import Job
+from threedfs.object.field import height_above
 from threedfs.params.deform import DeformParams
 
 
-def run(*, field: Path, support: Path, cloud: Path, volume: Path, params: DeformParams, job: Job) -> None:
-    """Read the fused field and the points; write the corrected field, the fused one if points are switched off."""
+def run(
+    *,
+    field: Path,
+    support: Path,
+    cloud: Path,
+    volume: Path,
+    clearance: float,
+    noise_clearance: float,
+    params: DeformParams,
+    job: Job,
+) -> None:
+    """Read the fused field and the points; write the corrected field, the fused one if points are switched off.
+
+    Solids count from a height over the plane on: `clearance` voxels, or `noise_clearance` standard deviations of the
+    support surface from its plane.
+    """
     fused = read_volume(field)
     points, engine = read_oriented_points(cloud)
     sdf = fused.sdf
@@ -34,24 +49,11 @@ def run(*, field: Path, support: Path, cloud: Path, volume: Path, params: Deform
         )
         place = read_support(support)
         check_samples(samples, (place.low + place.high) / 2, place.plane)
-        rng = np.random.default_rng(job.seed)
-        bare = draw_plane(
-            fused.sdf,
-            fused.seen,
-            fused.grid,
-            place.plane,
-            height=params.bump_height * (place.high - place.low).max(),
-            reach=params.reach,
-            trust=params.plane_trust,
-            count=params.plane_points,
-            rng=rng,
-        )
         sdf = correct_zero_crossing(
             fused.sdf,
             fused.seen,
             fused.grid,
             samples,
-            bare,
             CorrectionRule(
                 rbf_width=params.rbf_width,
                 controls=params.controls,
@@ -61,9 +63,12 @@ def run(*, field: Path, support: Path, cloud: Path, volume: Path, params: Deform
                 ridge=params.ridge,
                 reweightings=params.reweightings,
                 residual_scale=params.residual_scale,
-                plane_residual_scale=params.plane_residual_scale,
             ),
-            rng,
+            np.random.default_rng(job.seed),
             job.progress.note,
         )
+        if params.keep_apart:
+            least = max(clearance * fused.grid.spacing, noise_clearance * place.figures["plane_noise"])
+            above = (fused.seen > 0) & (height_above(place.plane, fused.grid) > least)
+            sdf = keep_apart(fused.sdf, sdf, above)
     write_volume(volume, Volume(fused.grid, sdf, fused.seen), job.header)
