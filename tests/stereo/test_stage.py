@@ -8,12 +8,14 @@ from threedfs.errors import UserError
 from threedfs.io.depth_maps import Semidense, read_stereo, write_semidense, write_stereo
 from threedfs.io.frames import Frame, write_frames
 from threedfs.io.keyframes import write_keyframes
+from threedfs.io.volumes import Support, write_support
 from threedfs.job import Job
 from threedfs.params.stereo import StereoParams
 from threedfs.params.stereo_check import StereoCheckParams
 from threedfs.progress import Progress
 from threedfs.stages import stereo, stereo_check
-from threedfs.types import Keyframe
+from threedfs.stereo.region import mask_box
+from threedfs.types import Keyframe, Plane
 
 JOB = Job(Progress("test"), {"provenance": "test"})
 
@@ -81,6 +83,29 @@ def test_costly_matches_are_dropped(matched):
     """Exact: no pixel above the cost is kept."""
     kept = check(matched, max_cost=0.01)
     assert (kept.cost[np.isfinite(kept.inverse_depth)] <= 0.01).all()
+
+
+@pytest.mark.parametrize("margin", [0.1, 0.4])
+def test_around_a_place_only_its_pixels_are_matched(matched, margin):
+    """Exact: the box and its margin, times its longest side, say where there are patches, and where none."""
+    low, high = np.array([-0.2, -0.1, 0.9]), np.array([0.2, 0.15, 1.1])
+    plane = Plane(np.array([0.0, 0.0, -1.0]), 1.5)
+    write_support(matched / "support.json", Support(plane, low, high, {"plane_noise": 0.001}), JOB.header)
+    stereo.run(
+        undistorted=matched / "frames.zarr.zip",
+        keyframes=matched / "keyframes.json",
+        semidense=matched / "semidense.zarr.zip",
+        support=matched / "support.json",
+        stereo=matched / "around.zarr.zip",
+        keyframe="0",
+        margin=margin,
+        params=StereoParams(levels=2, views=4),
+        job=JOB,
+    )
+    found = np.isfinite(read_stereo(matched / "around.zarr.zip").inverse_depth)
+    wanted = mask_box(scenes.views()[0], low - 0.4 * margin, high + 0.4 * margin)
+    assert 0.1 < wanted.mean() < 0.9
+    assert not found[~wanted].any() and found[wanted].mean() > 0.8
 
 
 def test_more_deciding_views_than_views_are_refused():
