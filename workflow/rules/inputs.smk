@@ -73,24 +73,24 @@ def per_keyframe(pattern, choose=lambda names, wildcards: names):
     return find
 
 
+def is_wide(wildcards):
+    """Say whether the neighbours of a sequence's keyframes are far apart, so that depth needs stereo."""
+    return read_keyframes(wildcards)["needs_stereo"]
+
+
 def if_wide(pattern):
-    """Return an input function: a file, if the neighbours of a sequence's keyframes are far apart, or nothing."""
-    return lambda wildcards: (
-        pattern if read_keyframes(wildcards)["needs_stereo"] else []
-    )
+    """Return an input function: a file, if keyframes are far apart, or nothing."""
+    return lambda wildcards: pattern if is_wide(wildcards) else []
 
 
 def unless_wide(pattern):
-    """Return an input function: nothing, if the neighbours of a sequence's keyframes are far apart, or a file."""
-    return lambda wildcards: (
-        [] if read_keyframes(wildcards)["needs_stereo"] else pattern
-    )
+    """Return an input function: nothing, if keyframes are far apart, or a file."""
+    return lambda wildcards: [] if is_wide(wildcards) else pattern
 
 
 def margin_of_points(wildcards):
     """Return how far around the object patches are sought; 0 where they are sought in whole images."""
-    wide = read_keyframes(wildcards)["needs_stereo"]
-    return 0.0 if wide else settings_of("densify")(wildcards)["margin"]
+    return 0.0 if is_wide(wildcards) else settings_of("densify")(wildcards)["margin"]
 
 
 def results_of_method(method):
@@ -119,25 +119,21 @@ def field_to_segment(wildcards):
     return f"results/{wildcards.sequence}/{FIELDS[method]}"
 
 
-def memory_of(stage, grid="fuse_object"):
-    """Return a resource function: the MB that a stage needs on the grid of another."""
+def memory_of(stage, grid="fuse_object", fit=lambda wildcards: (0, 0)):
+    """Return a resource function: the MB that a stage needs on the grid of another, and for a fit (rows, columns)."""
 
     def estimate(wildcards, input):
         side = settings_of(grid)(wildcards)["longest_side"]
         pixels = 0.75 * settings_of("frames")(wildcards)["longest_side"] ** 2
         maps = input.get("depth", input.get("semidense", []))
-        return estimate_memory(
-            stage, side, pixels, len(maps), *fit_of(stage, wildcards)
-        )
+        return estimate_memory(stage, side, pixels, len(maps), *fit(wildcards))
 
     return estimate
 
 
-def fit_of(stage, wildcards):
-    """Return the rows and columns of the matrix that a stage fits by; none, if it fits nothing."""
-    if stage != "deform":
-        return 0, 0
-    settings = settings_of(stage)(wildcards)
+def fit_of_correction(wildcards):
+    """Return the rows and columns of the matrix that the correction is fitted by."""
+    settings = settings_of("deform")(wildcards)
     return settings["surface_points"] + 2 * settings["anchors"], settings["controls"]
 
 

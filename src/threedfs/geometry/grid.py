@@ -41,3 +41,8 @@ def voxel_index(grid: VoxelGrid, points: np.ndarray) -> tuple[np.ndarray, np.nda
     index = np.floor(voxel_from_world(grid, points) + 0.5)
     kept = np.all((index >= 0) & (index < grid.shape), axis=-1)
     return index[kept].astype(np.int64), kept
+
+
+def box_corners(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Return the eight corners (8, 3) of a box along the axes between two opposite ones (3,)."""
+    return np.array([np.where([i & 1, i & 2, i & 4], high, low) for i in range(8)])

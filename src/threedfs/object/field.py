@@ -14,6 +14,21 @@ def height_above(plane: Plane, grid: VoxelGrid) -> np.ndarray:
     return (heights[0][:, None, None] + heights[1][:, None] + heights[2] + plane.offset).astype(np.float32)
 
 
+def least_height(clearance: float, noise_clearance: float, spacing: float, noise: float) -> float:
+    """Return the height over the plane from which solids count, scene units.
+
+    Parameters
+    ----------
+    clearance : float
+        In voxels.
+    noise_clearance : float
+        In standard deviations of the support surface from its plane.
+    spacing, noise : float
+        Of the voxels, and that deviation, scene units.
+    """
+    return max(clearance * spacing, noise_clearance * noise)
+
+
 def add_foot(voxels: np.ndarray, height: np.ndarray, grid: VoxelGrid, plane: Plane, clearance: float) -> np.ndarray:
     """Add to an object found above the clearance the voxels between it and the plane, straight below it.
 

@@ -12,7 +12,7 @@ from threedfs.deform.evidence import check_samples, take_points
 from threedfs.io.oriented_points import read_oriented_points
 from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.job import Job
-from threedfs.object.field import height_above
+from threedfs.object.field import height_above, least_height
 from threedfs.params.deform import DeformParams
 
 
@@ -68,7 +68,7 @@ def run(
             job.progress.note,
         )
         if params.keep_apart:
-            least = max(clearance * fused.grid.spacing, noise_clearance * place.figures["plane_noise"])
+            least = least_height(clearance, noise_clearance, fused.grid.spacing, place.figures["plane_noise"])
             above = (fused.seen > 0) & (height_above(place.plane, fused.grid) > least)
             sdf = keep_apart(fused.sdf, sdf, above)
     write_volume(volume, Volume(fused.grid, sdf, fused.seen), job.header)

@@ -46,8 +46,6 @@ def run(
         found = _nothing()
     else:
         frames = read_frames(undistorted)
-        place = read_support(support)
-        reach = params.margin * (place.high - place.low).max()
         numbers = {view.name: number for number, view in enumerate(read_poses(poses).views)}
         tracks = list_tracks(read_points(points), [numbers[view.name] for view in views])
         with TemporaryDirectory(prefix="threedfs-") as folder:
@@ -65,7 +63,7 @@ def run(
             rule = FusionRule(
                 params.min_pixels, params.max_depth_error, params.max_reprojection_error, params.max_normal_error
             )
-            found = fuse_workspace(workspace, rule, place.low - reach, place.high + reach)
+            found = fuse_workspace(workspace, rule, *read_support(support).grow(params.margin))
     job.progress.note(f"{len(found.xyz)} surface points ({engine})")
     write_oriented_points(cloud, found, [view.name for view in views], engine, job.header)
 

@@ -18,7 +18,7 @@ from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.job import Job
 from threedfs.object.component import choose_component, mark_points
 from threedfs.object.extract import extract_surface
-from threedfs.object.field import add_foot, height_above, mask_field
+from threedfs.object.field import add_foot, height_above, least_height, mask_field
 from threedfs.params.object import ObjectParams
 
 
@@ -45,7 +45,7 @@ def run(
     entries = read_keyframes(keyframes)
     views = [entry.view for entry in entries.values()]
     fixation = find_fixation(views, (place.low + place.high) / 2)
-    clearance = max(params.clearance * grid.spacing, params.noise_clearance * place.figures["plane_noise"])
+    clearance = least_height(params.clearance, params.noise_clearance, grid.spacing, place.figures["plane_noise"])
     height = height_above(place.plane, grid)
     holds = np.zeros(grid.shape, bool)
     for cloud in read_semidense_points(entries, semidense, params.point_deviation):

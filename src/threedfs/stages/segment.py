@@ -15,6 +15,7 @@ from threedfs.io.segmentation import Segmentation, write_segmentation
 from threedfs.io.superpixels import read_superpixels
 from threedfs.io.volumes import read_support, read_volume
 from threedfs.job import Job
+from threedfs.object.field import least_height
 from threedfs.params.segment import SegmentParams
 from threedfs.segment.energy import OBJECT
 from threedfs.segment.gather import GatherRule, Scene, gather_images, gather_voxels
@@ -54,7 +55,9 @@ def run(
         place.plane,
         place.low,
         place.high,
-        clearance=max(params.clearance * fused.grid.spacing, params.noise_clearance * place.figures["plane_noise"]),
+        clearance=least_height(
+            params.clearance, params.noise_clearance, fused.grid.spacing, place.figures["plane_noise"]
+        ),
         views=views,
         images={name: store.image(name) for name in views},
         valid=store.valid,

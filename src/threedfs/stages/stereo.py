@@ -39,9 +39,7 @@ def run(
     neighbours = entry.neighbours[: params.views]
     wanted = np.ones(entry.view.camera.shape, bool)
     if support:
-        place = read_support(support)
-        reach = margin * (place.high - place.low).max()
-        wanted = mask_box(entry.view, place.low - reach, place.high + reach)
+        wanted = mask_box(entry.view, *read_support(support).grow(margin))
     found = match_patches(
         entry.view,
         prepare_grey(frames.image(keyframe), frames.valid),

@@ -136,7 +136,7 @@ def match_patches(
                 )
         if level == 0:
             refine_depth(small, views, comparison, planes, cost)
-        note(f"level {level}: {100 * np.mean(cost[here] < 0.1):.0f} % of the patches match")
+        note(f"level {level}: {100 * (cost < 0.1).sum() / max(here.sum(), 1):.0f} % of the patches match")
     planes[cost >= 1] = np.nan
     return PatchMatch(planes[..., 0], planes[..., 1:], np.minimum(cost, 1.0))
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from threedfs.geometry.grid import box_corners
 from threedfs.geometry.projection import pixel_grid, project
 from threedfs.types import View
 
@@ -18,8 +19,7 @@ def mask_box(view: View, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     low, high : (3,) float64
         Opposite corners of the box, its sides along the axes of the world, scene units.
     """
-    corners = np.array([np.where([i & 1, i & 2, i & 4], high, low) for i in range(8)])
-    places, depth = project(view, corners)
+    places, depth = project(view, box_corners(low, high))
     if depth.min() <= 0:
         return np.ones(view.camera.shape, bool)
     u, v = pixel_grid(view.camera)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from threedfs.errors import UserError
+from threedfs.geometry.grid import box_corners
 from threedfs.geometry.projection import pixel_grid, project
 from threedfs.geometry.raycast import Hits, RayCaster
 from threedfs.geometry.vectors import dot, normalise
@@ -94,8 +95,7 @@ class Renderer:
         """Cast only the rays inside the projected bounding box of the object."""
         vertices = self.scene.solid.mesh.vertices
         low, high = vertices.min(axis=0), vertices.max(axis=0)
-        corners = np.array([np.where([i & 1, i & 2, i & 4], high, low) for i in range(8)])
-        pixels, depth = project(view, corners)
+        pixels, depth = project(view, box_corners(low, high))
         if np.all(depth > 0):
             u, v = pixel_grid(view.camera)
             near = (u >= pixels[:, 0].min() - 2) & (u <= pixels[:, 0].max() + 2)
