@@ -22,9 +22,7 @@ _BYTES_PER_PIXEL = {"segment": 80, "volumetric_cut": 20}
 """Of every keyframe, which these stages hold all at once."""
 
 
-def estimate_memory(
-    stage: str, longest_side: int, pixels: float = 0, keyframes: int = 0, rows: int = 0, columns: int = 0
-) -> int:
+def estimate_memory(stage: str, longest_side: int, pixels: float = 0, keyframes: int = 0, unknowns: int = 0) -> int:
     """Estimate the memory of a stage on a voxel grid, MB.
 
     Parameters
@@ -35,8 +33,8 @@ def estimate_memory(
     pixels : float
         Of an image.
     keyframes : int
-    rows, columns : int
-        Of the matrix of a fit, which `deform` holds twice, beside two squares of its columns.
+    unknowns : int
+        Of a fit, whose normal equations `deform` holds twice.
 
     Examples
     --------
@@ -46,5 +44,5 @@ def estimate_memory(
     2011
     """
     voxels = _BYTES_PER_VOXEL[stage] * longest_side**3
-    fit = 8 * 2 * (rows + columns) * columns
+    fit = 2 * 8 * unknowns**2
     return int(_PROGRAM + (voxels + _BYTES_PER_PIXEL.get(stage, 0) * pixels * keyframes + fit) / 1e6)

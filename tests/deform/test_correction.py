@@ -8,8 +8,15 @@ from scipy.ndimage import label
 
 from threedfs.deform.bridges import keep_apart
 from threedfs.deform.correction import CorrectionRule, correct_zero_crossing
-from threedfs.deform.evidence import SurfaceSamples, check_samples, sample_gradient, take_points, widest_gap
-from threedfs.deform.rbf import evaluate_at, evaluate_on_grid
+from threedfs.deform.evidence import (
+    SurfaceSamples,
+    average_in_cells,
+    check_samples,
+    sample_gradient,
+    take_points,
+    widest_gap,
+)
+from threedfs.deform.rbf import evaluate_at, evaluate_on_grid, place_basis
 from threedfs.deform.ridge import fit_ridge
 from threedfs.deform.samples import draw_anchors, draw_controls
 from threedfs.errors import UserError
@@ -182,14 +189,56 @@ def test_expansion_on_the_grid_is_the_sum_of_its_functions():
     np.testing.assert_allclose(evaluate_at(places, centres, 0.1) @ coefficients, direct, atol=1e-5)
 
 
-@pytest.mark.parametrize("shape", [(30, 80), (80, 30)])
-def test_ridge_solves_the_normal_equations(shape):
-    """Oracle: both ways of solving against the normal equations of Eq. 18."""
+@pytest.mark.parametrize(("count", "width"), [(3000, 0.02), (3000, 0.3), (40, 0.1)])
+def test_groups_of_points_give_the_whole_sum(count, width):
+    """Oracle: all functions at all points, against groups of points with the functions near them."""
     rng = np.random.default_rng(0)
-    basis, target, weight = rng.normal(size=shape), rng.normal(size=shape[0]), rng.uniform(0, 2, shape[0])
-    found = fit_ridge(basis, target, weight, 0.3)
-    matrix = basis.T @ (weight[:, None] * basis) + 0.15 * np.eye(shape[1])
-    np.testing.assert_allclose(found, np.linalg.solve(matrix, basis.T @ (weight * target)), atol=1e-9)
+    points, centres, coefficients = rng.random((count, 3)), rng.random((300, 3)), rng.normal(size=300)
+    basis = place_basis(points, centres, width)
+    assert np.array_equal(np.sort(np.concatenate([rows for rows, _ in basis.groups])), np.arange(count))
+    if width == 0.02:
+        assert max(len(columns) for _, columns in basis.groups) < 200
+    whole = evaluate_at(points, centres, width)
+    np.testing.assert_allclose(basis.combine(coefficients), whole @ coefficients, atol=1e-5)
+
+
+@pytest.mark.parametrize("count", [60, 1500])
+def test_ridge_solves_the_normal_equations(count):
+    """Oracle: the normal equations of Eq. 18 in one piece, with fewer points than functions and with more."""
+    rng = np.random.default_rng(0)
+    points, centres = rng.random((count, 3)), rng.random((200, 3))
+    target, weight = rng.normal(size=count), rng.uniform(0, 2, count)
+    found = fit_ridge(place_basis(points, centres, 0.1), target, weight, 0.3)
+    whole = evaluate_at(points, centres, 0.1)
+    matrix = whole.T @ (weight[:, None] * whole) + 0.15 * np.eye(200)
+    np.testing.assert_allclose(found, np.linalg.solve(matrix, whole.T @ (weight * target)), atol=1e-4)
+
+
+def test_points_of_a_cell_become_their_mean_by_trust():
+    """Exact."""
+    xyz = np.array([[0.1, 0.1, 0.1], [0.3, 0.1, 0.1], [0.7, 0.1, 0.1], [-0.1, 0.1, 0.1]])
+    samples = SurfaceSamples(xyz, np.array([0.2, 0.6, -0.1, 0.4]), np.array([0.2, 0.6, 0.9, 0.3]))
+    cells = average_in_cells(samples, 0.5)
+    np.testing.assert_allclose(cells.xyz[:, 0], [-0.1, 0.25, 0.7])
+    np.testing.assert_allclose(cells.sdf, [0.4, 0.5, -0.1])
+    np.testing.assert_allclose(cells.trust, [0.3, 0.8, 0.9])
+    assert average_in_cells(samples, 4).trust.max() == 1
+
+
+def test_points_that_err_on_their_own_average_out():
+    """Property: as many drawn points as there are cells leave more of their noise in the zero level."""
+    sdf = biased_field(lambda d: 0 * d[..., 0])
+    points = sphere_points(20000)
+    points.xyz[:] *= 1 + np.random.default_rng(3).normal(0, 0.3 * GRID.spacing / RADIUS, (20000, 1)).astype(np.float32)
+    samples = take(points, sdf)
+    cells = average_in_cells(samples, 3 * GRID.spacing)
+    drawn, averaged = (
+        correct_zero_crossing(
+            sdf, SEEN, GRID, some, replace(RULE, surface_points=len(cells.xyz)), np.random.default_rng(0)
+        )
+        for some in (samples, cells)
+    )
+    assert np.median(surface_error(averaged)) < 0.7 * np.median(surface_error(drawn))
 
 
 def test_widest_gap_is_found_around_the_axis():

@@ -16,7 +16,7 @@ rule deform:
         "../../envs/threedfs.yaml"
     threads: THREADS
     resources:
-        mem_mb=memory_of("deform", fit=fit_of_correction),
+        mem_mb=memory_of("deform", unknowns=unknowns_of_correction),
     params:
         code=code_of("deform"),
         settings=settings_of("deform"),

@@ -119,22 +119,21 @@ def field_to_segment(wildcards):
     return f"results/{wildcards.sequence}/{FIELDS[method]}"
 
 
-def memory_of(stage, grid="fuse_object", fit=lambda wildcards: (0, 0)):
-    """Return a resource function: the MB that a stage needs on the grid of another, and for a fit (rows, columns)."""
+def memory_of(stage, grid="fuse_object", unknowns=lambda wildcards: 0):
+    """Return a resource function: the MB that a stage needs on the grid of another, and for a fit of unknowns."""
 
     def estimate(wildcards, input):
         side = settings_of(grid)(wildcards)["longest_side"]
         pixels = 0.75 * settings_of("frames")(wildcards)["longest_side"] ** 2
         maps = input.get("depth", input.get("semidense", []))
-        return estimate_memory(stage, side, pixels, len(maps), *fit(wildcards))
+        return estimate_memory(stage, side, pixels, len(maps), unknowns(wildcards))
 
     return estimate
 
 
-def fit_of_correction(wildcards):
-    """Return the rows and columns of the matrix that the correction is fitted by."""
-    settings = settings_of("deform")(wildcards)
-    return settings["surface_points"] + 2 * settings["anchors"], settings["controls"]
+def unknowns_of_correction(wildcards):
+    """Return the number of coefficients that the correction is fitted with."""
+    return settings_of("deform")(wildcards)["controls"]
 
 
 def field_to_cut(wildcards):

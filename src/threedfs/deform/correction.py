@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from threedfs.deform.evidence import SurfaceSamples
-from threedfs.deform.rbf import evaluate_at, evaluate_on_grid
+from threedfs.deform.rbf import evaluate_on_grid, place_basis
 from threedfs.deform.ridge import fit_ridge
 from threedfs.deform.samples import draw_anchors, draw_controls
 from threedfs.types import VoxelGrid
@@ -27,7 +27,7 @@ class CorrectionRule:
     control_level : float
         Half of them lie where |sdf| is below it.
     surface_points, anchors : int
-        Points of each kind that are drawn; anchors of each level set.
+        Points of each kind that are drawn, fewer where there are fewer; anchors of each level set.
     ridge : float
     reweightings : int
     residual_scale : float
@@ -81,15 +81,15 @@ def correct_zero_crossing(
     xyz, value, trust = samples.xyz[chosen], samples.sdf[chosen], samples.trust[chosen]
     anchors = draw_anchors(sdf, seen, grid, rule.anchors, rng)
     centres = draw_controls(sdf, grid, rule.controls, rule.control_level, rng)
-    basis = evaluate_at(np.concatenate([xyz, anchors]), centres, rule.rbf_width)
+    basis = place_basis(np.concatenate([xyz, anchors]), centres, rule.rbf_width)
     target = np.concatenate([-value, np.zeros(len(anchors))])
     weight = np.concatenate([trust, np.ones(len(anchors))])
     coefficients = fit_ridge(basis, target, weight, rule.ridge)
     for _ in range(rule.reweightings):
-        residual = basis[: len(xyz)] @ coefficients - target[: len(xyz)]
+        residual = (basis.combine(coefficients) - target)[: len(xyz)]
         weight[: len(xyz)] = trust / (1 + (residual / rule.residual_scale) ** 2)
         coefficients = fit_ridge(basis, target, weight, rule.ridge)
-    left = np.abs(basis[: len(xyz)] @ coefficients + value)
+    left = np.abs(basis.combine(coefficients)[: len(xyz)] + value)
     note(f"field at {len(xyz)} points: median {np.median(np.abs(value)):.3f}, corrected {np.median(left):.3f}")
     corrected = sdf + evaluate_on_grid(grid, centres, coefficients, rule.rbf_width)
     return np.where(seen > 0, np.clip(corrected, -1, 1), sdf).astype(np.float32)

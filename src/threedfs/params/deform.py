@@ -31,7 +31,17 @@ class DeformParams:
         maximum=1.0,
     )
     surface_points: int = parameter(
-        6000, "surface points drawn for the fit (paper: 500)", equation="Eq. 18", minimum=50, maximum=20000
+        50000,
+        "surface points drawn for the fit, all where there are fewer (paper: 500)",
+        equation="Eq. 18",
+        minimum=50,
+        maximum=1000000,
+    )
+    cell: float = parameter(
+        1.5,
+        "side of the cells in which surface points are averaged before they are drawn; 0: not at all (paper)",
+        unit="voxel",
+        minimum=0.0,
     )
     anchors: int = parameter(
         500,
