@@ -34,7 +34,7 @@ def estimate_memory(stage: str, longest_side: int, pixels: float = 0, keyframes:
         Of an image.
     keyframes : int
     unknowns : int
-        Of a fit, whose normal equations `deform` holds twice.
+        Of a fit, whose normal equations `deform` holds up to three times.
 
     Examples
     --------
@@ -44,5 +44,5 @@ def estimate_memory(stage: str, longest_side: int, pixels: float = 0, keyframes:
     2011
     """
     voxels = _BYTES_PER_VOXEL[stage] * longest_side**3
-    fit = 2 * 8 * unknowns**2
+    fit = 3 * 8 * unknowns**2
     return int(_PROGRAM + (voxels + _BYTES_PER_PIXEL.get(stage, 0) * pixels * keyframes + fit) / 1e6)

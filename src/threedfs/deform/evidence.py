@@ -18,13 +18,15 @@ _WIDEST_GAP = 270.0
 
 @dataclass(frozen=True)
 class SurfaceSamples:
-    """Points where the field should be zero.
+    """Points where the field should be zero, or means of such points.
 
     Attributes
     ----------
     xyz : (N, 3) float64, world
-    sdf : (N,) float64, the field there
-    trust : (N,) float64 in (0, 1]
+    sdf : (N,) float64
+        The field there, or its mean at the points.
+    trust : (N,) float64, above 0
+        How much each counts in the fit; at most 1 for a point.
     """
 
     xyz: np.ndarray
@@ -91,10 +93,14 @@ def take_points(
 
 
 def average_in_cells(samples: SurfaceSamples, size: float) -> SurfaceSamples:
-    """Return one sample for every cell of space that has some: their mean by trust, with their trust together, up to 1.
+    """Return one sample for every cell of space that has some: their mean by trust, with their trust together.
 
-    Differs from the paper, which draws points at random: drawn points are densest where texture is, and each has an
-    error of its own. A cell has their mean, and counts once however many they are.
+    Trust is scaled to a mean of 1, so that the fit weighs samples against its ridge the same however many points there
+    are. A cell that many points lie in counts more than one that few do: surfaces are where points agree. The field is
+    averaged too, not looked up at the mean place, which is off a curved surface.
+
+    Differs from the paper, which draws points at random: there most points are left aside, and each that is drawn has
+    an error of its own.
 
     Parameters
     ----------
@@ -102,12 +108,12 @@ def average_in_cells(samples: SurfaceSamples, size: float) -> SurfaceSamples:
     size : float
         Side of a cell, scene units.
     """
-    _, cell = np.unique(np.floor(samples.xyz / size).astype(np.int64), axis=0, return_inverse=True)
+    _, cell = np.unique(((samples.xyz - samples.xyz.min(0)) / size).astype(np.int64), axis=0, return_inverse=True)
     cell = cell.ravel()
     trust = np.bincount(cell, samples.trust)
     weight = samples.trust / trust[cell]
     xyz = np.stack([np.bincount(cell, weight * places) for places in samples.xyz.T], axis=1)
-    return SurfaceSamples(xyz, np.bincount(cell, weight * samples.sdf), np.minimum(trust, 1))
+    return SurfaceSamples(xyz, np.bincount(cell, weight * samples.sdf), trust / trust.mean())
 
 
 def check_samples(samples: SurfaceSamples, centre: np.ndarray, plane: Plane) -> None:

@@ -10,7 +10,7 @@ import numpy as np
 from threedfs.types import VoxelGrid
 
 _GROUP = 512
-"""Points that are evaluated at once: more of them lie farther apart, and more functions reach them."""
+"""Most points that are evaluated at once: more of them lie farther apart, and more functions reach them."""
 
 _FARTHEST = 4.0
 """Widths beyond which a function is left out at a point: there it is 1e-7."""

@@ -31,4 +31,4 @@ def fit_ridge(basis: PlacedBasis, target: np.ndarray, weight: np.ndarray, ridge:
         matrix[np.ix_(columns, columns)] += weighted.T @ block
         right[columns] += target[rows] @ weighted
     matrix[np.diag_indices_from(matrix)] += ridge / 2
-    return cho_solve(cho_factor(matrix, overwrite_a=True), right)
+    return cho_solve(cho_factor(matrix.T, overwrite_a=True), right)  # in Fortran's order: no copy

@@ -42,6 +42,7 @@ class DeformParams:
         "side of the cells in which surface points are averaged before they are drawn; 0: not at all (paper)",
         unit="voxel",
         minimum=0.0,
+        maximum=10.0,
     )
     anchors: int = parameter(
         500,
