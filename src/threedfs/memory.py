@@ -10,13 +10,13 @@ _BYTES_PER_VOXEL = {
     "locate": 30,
     "fuse_object": 40,
     "fuse_baseline": 40,
-    "deform": 60,
+    "deform": 40,
     "object": 60,
     "cut_object": 150,
     "segment": 140,
     "volumetric_cut": 120,
 }
-"""At most, over a cube: the highest peaks of the benchmark's jobs are 0.45 to 0.72 of what these give."""
+"""At most, over a cube: the highest peaks of the benchmark's jobs are 0.37 to 0.72 of what these give."""
 
 _BYTES_PER_PIXEL = {"segment": 80, "volumetric_cut": 20}
 """Of every keyframe, which these stages hold all at once."""
