@@ -57,9 +57,9 @@ def correct_zero_crossing(
 
     Differs from the paper: a point counts by its trust, and less the farther the corrected field stays from zero
     there (Cauchy's weights, refitted `reweightings` times): a smooth correction cannot follow a wrong point among
-    right ones. With trust 1 and no reweighting it is Eq. 18
-    (functions farther than four widths count as 0 in the fit). Always: voxels that no view sees keep their value, and
-    the sum is clipped to [-1, 1], which Eq. 16 is not.
+    right ones. With trust 1 and no reweighting it is Eq. 18. Always: functions farther than four widths from a point
+    count as 0 in the fit, voxels that no view sees keep their value, and the sum is clipped to [-1, 1], which Eq. 16
+    is not.
 
     Parameters
     ----------
