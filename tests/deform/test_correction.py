@@ -12,6 +12,7 @@ from threedfs.deform.evidence import (
     SurfaceSamples,
     average_in_cells,
     check_samples,
+    measure_scatter,
     sample_gradient,
     take_points,
     widest_gap,
@@ -236,6 +237,32 @@ def test_points_that_err_on_their_own_average_out():
         correct_zero_crossing(sdf, SEEN, GRID, some, rule, np.random.default_rng(0)) for some in (samples, cells)
     )
     assert np.median(surface_error(averaged)) < 0.5 * np.median(surface_error(drawn))
+
+
+@pytest.mark.parametrize("bias", [0.0, 1.0])
+def test_scatter_is_that_of_points_about_their_neighbours(bias):
+    """Exact: the median of a normal error is 0.674 of its deviation, whatever bias the field has."""
+    sdf = biased_field(lambda d: bias * GRID.spacing + 0 * d[..., 0])
+    points = sphere_points(20000)
+    points.xyz[:] *= 1 + np.random.default_rng(3).normal(0, 0.8 * GRID.spacing / RADIUS, (20000, 1)).astype(np.float32)
+    assert measure_scatter(take(points, sdf), sdf, GRID) == pytest.approx(0.674 * 0.8, rel=0.1)
+    few = take(sphere_points(60), sdf)
+    assert measure_scatter(few, sdf, GRID) == 0
+
+
+def test_scattered_points_move_the_zero_level_less_the_less_they_are_believed():
+    """Property: points that err by a voxel each flatten the field where they are believed fully."""
+    sdf = biased_field(lambda d: 0 * d[..., 0])
+    points = sphere_points(20000)
+    points.xyz[:] *= 1 + np.random.default_rng(3).normal(0, GRID.spacing / RADIUS, (20000, 1)).astype(np.float32)
+    samples = take(points, sdf)
+    rule = replace(RULE, surface_points=50000)
+    error = []
+    for belief in (1.0, 0.05):
+        cells = average_in_cells(samples, 1.5 * GRID.spacing, belief)
+        corrected = correct_zero_crossing(sdf, SEEN, GRID, cells, rule, np.random.default_rng(0))
+        error.append(np.median(surface_error(corrected)))
+    assert error[1] < 0.5 * error[0]
 
 
 def test_reweighting_forgives_dense_points_off_the_surface():

@@ -11,6 +11,12 @@ from threedfs.errors import UserError
 from threedfs.geometry.grid import voxel_from_world
 from threedfs.types import OrientedPoints, Plane, VoxelGrid
 
+_PLACE = 3.0
+"""Side of a place of the field's surface, voxels."""
+
+_LEAST_OVER_PLACE = 5
+"""Points over a place from which they tell how far they scatter."""
+
 _LEAST_POINTS = 50
 _WIDEST_GAP = 270.0
 """Degrees around the object without any point from which its points are all on one side."""
@@ -92,12 +98,36 @@ def take_points(
     return SurfaceSamples(xyz[agrees], value[kept][agrees], trust[agrees])
 
 
-def average_in_cells(samples: SurfaceSamples, size: float) -> SurfaceSamples:
+def measure_scatter(samples: SurfaceSamples, sdf: np.ndarray, grid: VoxelGrid) -> float:
+    """Return how far points over one place of the field's surface scatter along its normal, voxels.
+
+    The median over points of the distance from the mean of those over the same place: a field that is wrong in the
+    same way for all of them adds nothing. 0 where no place has enough of them.
+
+    Parameters
+    ----------
+    samples : SurfaceSamples
+        Points, not means.
+    sdf : (nx, ny, nz) float32
+    grid : VoxelGrid
+    """
+    ascent = sample_gradient(sdf, grid, samples.xyz)
+    step = grid.spacing * ascent
+    rise = sample_field(sdf, grid, samples.xyz + step) - sample_field(sdf, grid, samples.xyz - step)
+    slope = max(float(np.nanmedian(rise)) / (2 * grid.spacing), 1e-9)
+    foot = samples.xyz - (samples.sdf / slope)[:, None] * ascent
+    place, count = _number_cells(foot, _PLACE * grid.spacing)
+    mean = np.bincount(place, samples.sdf) / count
+    apart = np.abs(samples.sdf - mean[place])[count[place] >= _LEAST_OVER_PLACE]
+    return float(np.median(apart)) / (slope * grid.spacing) if len(apart) else 0.0
+
+
+def average_in_cells(samples: SurfaceSamples, size: float, belief: float = 1.0) -> SurfaceSamples:
     """Return one sample for every cell of space that has some: their mean by trust, with their trust together.
 
-    Trust is scaled to a mean of 1, so that the fit weighs samples against its ridge the same however many points there
-    are. A cell that many points lie in counts more than one that few do: surfaces are where points agree. The field is
-    averaged too, not looked up at the mean place, which is off a curved surface.
+    Trust is scaled to a mean of `belief`, so that the fit weighs samples against its ridge the same however many points
+    there are. A cell that many points lie in counts more than one that few do: surfaces are where points agree. The
+    field is averaged too, not looked up at the mean place, which is off a curved surface.
 
     Differs from the paper, which draws points at random: there most points are left aside, and each that is drawn has
     an error of its own.
@@ -107,13 +137,19 @@ def average_in_cells(samples: SurfaceSamples, size: float) -> SurfaceSamples:
     samples : SurfaceSamples
     size : float
         Side of a cell, scene units.
+    belief : float
     """
-    _, cell = np.unique(((samples.xyz - samples.xyz.min(0)) / size).astype(np.int64), axis=0, return_inverse=True)
-    cell = cell.ravel()
+    cell, _ = _number_cells(samples.xyz, size)
     trust = np.bincount(cell, samples.trust)
     weight = samples.trust / trust[cell]
     xyz = np.stack([np.bincount(cell, weight * places) for places in samples.xyz.T], axis=1)
-    return SurfaceSamples(xyz, np.bincount(cell, weight * samples.sdf), trust / trust.mean())
+    return SurfaceSamples(xyz, np.bincount(cell, weight * samples.sdf), belief * (trust / trust.mean()))
+
+
+def _number_cells(places: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
+    corner = ((places - places.min(axis=0)) / size).astype(np.int64)
+    _, cell, count = np.unique(corner, axis=0, return_inverse=True, return_counts=True)
+    return cell.ravel(), count
 
 
 def check_samples(samples: SurfaceSamples, centre: np.ndarray, plane: Plane) -> None:

@@ -44,6 +44,13 @@ class DeformParams:
         minimum=0.0,
         maximum=10.0,
     )
+    scatter: float = parameter(
+        0.6,
+        "distance of points from the mean of those beside them, in the median, up to which they count fully; "
+        "beyond, by the square of the ratio; acts with cell",
+        unit="voxel",
+        exclusive_minimum=0.0,
+    )
     anchors: int = parameter(
         500,
         "points drawn on each of the level sets 0.9 and -0.9, where the field is not to change",
