@@ -102,7 +102,8 @@ def measure_scatter(samples: SurfaceSamples, sdf: np.ndarray, grid: VoxelGrid) -
     """Return how far points over one place of the field's surface scatter along its normal, voxels.
 
     The median over points of the distance from the mean of those over the same place: a field that is wrong in the
-    same way for all of them adds nothing. 0 where no place has enough of them.
+    same way for all of them adds nothing. 0 where no place has enough of them. Not in the paper, which believes all
+    points alike.
 
     Parameters
     ----------
@@ -138,6 +139,7 @@ def average_in_cells(samples: SurfaceSamples, size: float, belief: float = 1.0) 
     size : float
         Side of a cell, scene units.
     belief : float
+        Mean trust of the cells, in (0, 1].
     """
     cell, _ = _number_cells(samples.xyz, size)
     trust = np.bincount(cell, samples.trust)
@@ -147,6 +149,7 @@ def average_in_cells(samples: SurfaceSamples, size: float, belief: float = 1.0) 
 
 
 def _number_cells(places: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the number of the cell that each place (N, 3) lies in, (N,) int, and how many lie in each, (C,) int."""
     corner = ((places - places.min(axis=0)) / size).astype(np.int64)
     _, cell, count = np.unique(corner, axis=0, return_inverse=True, return_counts=True)
     return cell.ravel(), count
