@@ -1,6 +1,7 @@
 """Oracle tests of COLMAP's workspace: maps of a plane in closed form fuse to points of that plane."""
 
 import numpy as np
+import pycolmap
 import pytest
 
 from threedfs.colmap.workspace import (
@@ -126,7 +127,15 @@ def test_colmap_matches_patches_where_there_is_cuda(tmp_path):
     assert np.median(np.abs(found.xyz @ NORMAL)) < 0.01
 
 
-@pytest.mark.skipif(has_cuda(), reason="refused only where there is no CUDA")
-def test_matching_on_the_gpu_is_refused_without_cuda(tmp_path):
-    with pytest.raises(UserError, match="expected COLMAP with CUDA for cuda, got one without; set it to cpu"):
-        match_on_gpu(tmp_path, window_radius=3)
+@pytest.mark.parametrize(
+    ("built", "gpus", "can", "found"),
+    [(False, 0, False, "one built without"), (True, 0, False, "no GPU"), (True, 1, True, None)],
+)
+def test_matching_on_the_gpu_needs_both_cuda_and_a_gpu(tmp_path, monkeypatch, built, gpus, can, found):
+    """Rejection: COLMAP with CUDA ends the process where there is no GPU."""
+    monkeypatch.setattr(pycolmap, "has_cuda", built)
+    monkeypatch.setattr(pycolmap, "get_num_cuda_devices", lambda: gpus, raising=False)
+    assert has_cuda() == can
+    if not can:
+        with pytest.raises(UserError, match=f"and a GPU, for cuda, found {found}; set it to cpu"):
+            match_on_gpu(tmp_path, window_radius=3)

@@ -26,7 +26,7 @@ SIGNATURES = {
     "keyframes": ("undistorted poses points masks", "keyframes", ""),
     "semidense": ("undistorted keyframes poses points", "semidense", "keyframe"),
     "edges": ("undistorted keyframes", "edges", "keyframe"),
-    "stereo": ("undistorted keyframes semidense support", "stereo", "keyframe margin"),
+    "stereo": ("undistorted keyframes semidense support", "stereo", "keyframe"),
     "stereo_check": ("keyframes stereo", "checked", "keyframe"),
     "depth": ("undistorted keyframes semidense edges stereo", "depth", "keyframe"),
     "consistency": ("keyframes depth", "consistency", ""),

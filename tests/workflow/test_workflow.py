@@ -172,7 +172,7 @@ def test_methods_share_what_they_have_in_common(finished):
     }
     assert len(set(fields.values())) == 5
     patches = json.loads((finished.folder / "results/sample/05_stereo/000001.zarr.zip").read_text())
-    assert patches["inputs"]["support"] is not None and patches["names"] == {"keyframe": "000001", "margin": 0.1}
+    assert patches["inputs"]["support"] is not None and patches["names"] == {"keyframe": "000001"}
     assert "Nothing to be done" in finished.run("--configfile", "all.yaml")
 
 

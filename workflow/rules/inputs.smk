@@ -88,11 +88,6 @@ def unless_wide(pattern):
     return lambda wildcards: [] if is_wide(wildcards) else pattern
 
 
-def margin_of_points(wildcards):
-    """Return how far around the object patches are sought; 0 where they are sought in whole images."""
-    return 0.0 if is_wide(wildcards) else settings_of("densify")(wildcards)["margin"]
-
-
 def results_of_method(method):
     """Return the names of what a method makes: those of pixels have no mesh."""
     has_mesh = method.partition("@")[0] not in PIXEL_CUTS

@@ -23,7 +23,6 @@ rule stereo:
         code=code_of("stereo"),
         settings=settings_of("stereo"),
         seed=config["seed"],
-        labels=lambda wildcards: {"margin": margin_of_points(wildcards)},
     message:
         "Match patches of {wildcards.sequence} {wildcards.keyframe}."
     script:

@@ -120,20 +120,21 @@ def match_on_gpu(folder: Path, window_radius: int) -> None:
     Raises
     ------
     UserError
-        If COLMAP has no CUDA here.
+        If COLMAP was built without CUDA, or there is no GPU.
     """
     if not has_cuda():
         raise UserError(
-            "densify.engine: expected COLMAP with CUDA for cuda, got one without; set it to cpu, or to auto, which "
-            "takes what there is."
+            "densify.engine: expected COLMAP built with CUDA, and a GPU, for cuda, found "
+            f"{'no GPU' if pycolmap.has_cuda else 'one built without'}; set it to cpu, or to auto, which takes what "
+            "there is."
         )
     options = pycolmap.PatchMatchOptions(window_radius=window_radius)
     pycolmap.patch_match_stereo(folder, options=options)
 
 
 def has_cuda() -> bool:
-    """Say whether COLMAP can match patches on this machine."""
-    return bool(pycolmap.has_cuda)
+    """Say whether COLMAP can match patches on this machine: without a GPU its patch match ends the process."""
+    return bool(pycolmap.has_cuda) and pycolmap.get_num_cuda_devices() > 0
 
 
 def fuse_workspace(folder: Path, rule: FusionRule, low: np.ndarray, high: np.ndarray) -> OrientedPoints:

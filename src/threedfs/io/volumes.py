@@ -54,11 +54,6 @@ class Support:
     high: np.ndarray
     figures: Mapping[str, float]
 
-    def grow(self, margin: float) -> tuple[np.ndarray, np.ndarray]:
-        """Return the corners (3,) of the box with a margin of so many times its longest side, scene units."""
-        reach = margin * (self.high - self.low).max()
-        return self.low - reach, self.high + reach
-
 
 def write_volume(path: Path, volume: Volume, header: Mapping[str, Any]) -> None:
     """Write a volume."""

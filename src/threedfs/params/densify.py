@@ -42,6 +42,3 @@ class DensifyParams:
     max_normal_error: float = parameter(
         20.0, "angle between normals up to which two keyframes see one point", unit="degree", exclusive_minimum=0.0
     )
-    margin: float = parameter(
-        0.1, "points are made so far beyond the object's box", unit="longest side of the box", minimum=0.0
-    )

@@ -63,7 +63,8 @@ def run(
             rule = FusionRule(
                 params.min_pixels, params.max_depth_error, params.max_reprojection_error, params.max_normal_error
             )
-            found = fuse_workspace(workspace, rule, *read_support(support).grow(params.margin))
+            place = read_support(support)
+            found = fuse_workspace(workspace, rule, place.low, place.high)
     job.progress.note(f"{len(found.xyz)} surface points ({engine})")
     write_oriented_points(cloud, found, [view.name for view in views], engine, job.header)
 

@@ -25,21 +25,20 @@ def run(
     support: Path | None,
     stereo: Path,
     keyframe: str,
-    margin: float,
     params: StereoParams,
     job: Job,
 ) -> None:
     """Read a keyframe, its neighbours and semi-dense depth; write its patches, around the object if its place is given.
 
-    The place says only where patches are sought, not at what depth. Around: the box of the object and `margin` times
-    its longest side.
+    The place says only where patches are sought, not at what depth: in front of the object's box and behind it too.
     """
     frames = read_frames(undistorted)
     entry = read_keyframe(keyframes, keyframe)
     neighbours = entry.neighbours[: params.views]
     wanted = np.ones(entry.view.camera.shape, bool)
     if support:
-        wanted = mask_box(entry.view, *read_support(support).grow(margin))
+        place = read_support(support)
+        wanted = mask_box(entry.view, place.low, place.high)
     found = match_patches(
         entry.view,
         prepare_grey(frames.image(keyframe), frames.valid),
