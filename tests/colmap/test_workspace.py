@@ -6,8 +6,8 @@ import pytest
 
 from threedfs.colmap.workspace import (
     FusionRule,
+    can_match_on_gpu,
     fuse_workspace,
-    has_cuda,
     match_on_gpu,
     write_patch_map,
     write_workspace,
@@ -107,7 +107,7 @@ def test_equal_maps_give_equal_points(tmp_path):
         np.testing.assert_array_equal(values, getattr(second, name), err_msg=name)
 
 
-@pytest.mark.skipif(not has_cuda(), reason="COLMAP's own patch match needs CUDA")
+@pytest.mark.skipif(not can_match_on_gpu(), reason="COLMAP's own patch match needs CUDA and a GPU")
 def test_colmap_matches_patches_where_there_is_cuda(tmp_path):
     """Oracle: of a textured plane its points lie on the plane, in the same form as ours."""
     rng = np.random.default_rng(0)
@@ -135,7 +135,7 @@ def test_matching_on_the_gpu_needs_both_cuda_and_a_gpu(tmp_path, monkeypatch, bu
     """Rejection: COLMAP with CUDA ends the process where there is no GPU."""
     monkeypatch.setattr(pycolmap, "has_cuda", built)
     monkeypatch.setattr(pycolmap, "get_num_cuda_devices", lambda: gpus, raising=False)
-    assert has_cuda() == can
+    assert can_match_on_gpu() == can
     if not can:
-        with pytest.raises(UserError, match=f"and a GPU, for cuda, found {found}; set it to cpu"):
+        with pytest.raises(UserError, match=f"built with CUDA, and a GPU, found {found}; set it to cpu"):
             match_on_gpu(tmp_path, window_radius=3)

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from importlib.metadata import PackageNotFoundError
+
 import pytest
 
+from threedfs.store import code
 from threedfs.store.code import digest_code, library_versions
 
 MODULE = "toolbox.stages.join"
@@ -69,6 +72,30 @@ def test_libraries_are_those_imported(toolbox):
     libraries = digest_code(MODULE).libraries
     assert {"json", "numpy"} <= set(libraries)
     assert set(library_versions(libraries)) == {"numpy"}
+
+
+@pytest.mark.parametrize(
+    ("installed", "expected"),
+    [
+        ({"pycolmap": "4.2.1"}, {"pycolmap": "4.2.1"}),
+        ({"pycolmap-cuda12": "4.2.1"}, {"pycolmap": "4.2.1 (pycolmap-cuda12)"}),
+        ({}, {}),
+    ],
+)
+def test_a_package_that_stands_in_for_a_pinned_one_is_told_from_it(monkeypatch, installed, expected):
+    """Exact: COLMAP built with CUDA comes as another package, and what it computed is not taken for the other's."""
+
+    def find(name):
+        if name not in installed:
+            raise PackageNotFoundError(name)
+        return installed[name]
+
+    monkeypatch.setattr(code, "version", find)
+    library_versions.cache_clear()
+    try:
+        assert library_versions(("json", "pycolmap")) == expected
+    finally:
+        library_versions.cache_clear()
 
 
 def test_unknown_module_is_refused(toolbox):

@@ -12,6 +12,8 @@ import subprocess
 import time
 from collections import Counter
 
+import pytest
+
 from threedfs.store.files import remove_abandoned
 
 RULES = (
@@ -174,6 +176,27 @@ def test_methods_share_what_they_have_in_common(finished):
     patches = json.loads((finished.folder / "results/sample/05_stereo/000001.zarr.zip").read_text())
     assert patches["inputs"]["support"] is not None and patches["names"] == {"keyframe": "000001"}
     assert "Nothing to be done" in finished.run("--configfile", "all.yaml")
+
+
+@pytest.mark.parametrize(
+    ("engine", "gpu", "matched_here", "asked"),
+    [
+        ("cuda", False, False, False),  # refused by the stage, where the job runs
+        ("auto", True, False, True),
+        ("auto", False, True, False),
+        ("cpu", True, True, False),
+    ],
+)
+def test_patches_are_matched_here_unless_the_gpu_does(finished, engine, gpu, matched_here, asked):
+    """Contract: the configuration decides, and what can be had where it leaves that open."""
+    if gpu:
+        finished.edit("src/threedfs/colmap/workspace.py", "return bool(pycolmap.has_cuda) and", "return True or")
+    (finished.folder / "gpu.yaml").write_text(f"methods: [deformed_sdf]\ndensify: {{engine: {engine}}}\n")
+    output = finished.run("--configfile", "gpu.yaml")
+    assert jobs_done(output)["stereo"] == 2 * matched_here and jobs_done(output)["densify"] == 1
+    cloud = json.loads((finished.folder / "results/sample/08_densify/points.zarr.zip").read_text())
+    assert (cloud["inputs"]["stereo"] is not None) == matched_here
+    assert cloud["names"] == {"cuda": asked}
 
 
 def test_methods_of_the_segmentation_share_their_cuts(finished):

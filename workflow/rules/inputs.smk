@@ -146,9 +146,9 @@ def finds_cuda(wildcards):
     settings = settings_of("densify")(wildcards)
     if not settings["points"] or settings["engine"] != "auto":
         return False
-    from threedfs.colmap.workspace import has_cuda
+    from threedfs.colmap.workspace import can_match_on_gpu
 
-    return has_cuda()
+    return can_match_on_gpu()
 
 
 def if_matched_here(pattern):

@@ -1,5 +1,5 @@
 # 05: slanted patches of a keyframe that match in other views: of the whole image where depth needs them, else of the
-# pixels around the object.
+# pixels that see the object's box.
 
 
 rule stereo:

@@ -122,18 +122,18 @@ def match_on_gpu(folder: Path, window_radius: int) -> None:
     UserError
         If COLMAP was built without CUDA, or there is no GPU.
     """
-    if not has_cuda():
+    if not can_match_on_gpu():
         raise UserError(
-            "densify.engine: expected COLMAP built with CUDA, and a GPU, for cuda, found "
-            f"{'no GPU' if pycolmap.has_cuda else 'one built without'}; set it to cpu, or to auto, which takes what "
-            "there is."
+            "densify.engine: to match patches on the GPU, expected COLMAP built with CUDA, and a GPU, found "
+            f"{'no GPU' if pycolmap.has_cuda else 'one built without'}; set it to cpu, or, where jobs run on the "
+            "machine that starts them, to auto, which takes what there is."
         )
     options = pycolmap.PatchMatchOptions(window_radius=window_radius)
     pycolmap.patch_match_stereo(folder, options=options)
 
 
-def has_cuda() -> bool:
-    """Say whether COLMAP can match patches on this machine: without a GPU its patch match ends the process."""
+def can_match_on_gpu() -> bool:
+    """Say whether COLMAP can match patches here: built with CUDA; without a GPU it would end the process."""
     return bool(pycolmap.has_cuda) and pycolmap.get_num_cuda_devices() > 0
 
 

@@ -16,8 +16,8 @@ class DensifyParams:
     )
     engine: str = parameter(
         "auto",
-        "what matches the patches: our own patch match (cpu), COLMAP's, which needs CUDA (cuda), COLMAP's where there "
-        "is CUDA (auto)",
+        "what matches the patches: our own patch match (cpu); COLMAP's, which needs COLMAP built with CUDA and a GPU "
+        "(cuda); COLMAP's where there is both (auto)",
         choices=("auto", "cpu", "cuda"),
     )
     max_cost: float = parameter(

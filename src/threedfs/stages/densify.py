@@ -36,9 +36,9 @@ def run(
     params: DensifyParams,
     job: Job,
 ) -> None:
-    """Read the keyframes and their patches, or match patches on the GPU; write the points around the object.
+    """Read the keyframes and their patches, or match patches on the GPU; write the points in the object's box.
 
-    Differs from the paper: slanted patches merged by COLMAP in place of PMVS (3.3.2), and only around the object's box.
+    Differs from the paper: slanted patches merged by COLMAP in place of PMVS (3.3.2), and only in the object's box.
     """
     views = [entry.view for entry in read_keyframes(keyframes).values()]
     engine = choose_engine(params.points, params.engine, cuda)

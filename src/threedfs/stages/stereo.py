@@ -28,9 +28,10 @@ def run(
     params: StereoParams,
     job: Job,
 ) -> None:
-    """Read a keyframe, its neighbours and semi-dense depth; write its patches, around the object if its place is given.
+    """Read a keyframe, its neighbours and semi-dense depth; write its patches.
 
-    The place says only where patches are sought, not at what depth: in front of the object's box and behind it too.
+    If the place of the object is given, patches are sought at the pixels that see its box, at any depth: in front of it
+    and behind it too.
     """
     frames = read_frames(undistorted)
     entry = read_keyframe(keyframes, keyframe)

@@ -11,11 +11,13 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 _DISTRIBUTIONS = {
-    "cv2": "opencv-python-headless",
-    "maxflow": "PyMaxflow",
-    "skimage": "scikit-image",
-    "sklearn": "scikit-learn",
+    "cv2": ("opencv-python-headless",),
+    "maxflow": ("PyMaxflow",),
+    "pycolmap": ("pycolmap", "pycolmap-cuda12"),
+    "skimage": ("scikit-image",),
+    "sklearn": ("scikit-learn",),
 }
+"""What brings a library, by import name: the pinned package first, then others that may stand in for it."""
 
 
 @dataclass(frozen=True)
@@ -76,14 +78,26 @@ def digest_code(module: str, *more: str) -> Code:
 
 @lru_cache(maxsize=256)
 def library_versions(libraries: tuple[str, ...]) -> dict[str, str]:
-    """Look up the installed versions of libraries by import name; the standard library has none."""
+    """Look up the installed versions of libraries by import name; the standard library has none.
+
+    That of a package which stands in for the pinned one is followed by its name: it may compute otherwise.
+    """
     versions = {}
     for library in libraries:
-        try:
-            versions[library] = version(_DISTRIBUTIONS.get(library, library))
-        except PackageNotFoundError:
-            continue
+        pinned, *others = _DISTRIBUTIONS.get(library, (library,))
+        found = {name: _find_version(name) for name in (pinned, *others)}
+        if found[pinned]:
+            versions[library] = found[pinned]
+        elif any(found.values()):
+            versions[library] = next(f"{number} ({name})" for name, number in found.items() if number)
     return versions
+
+
+def _find_version(distribution: str) -> str | None:
+    try:
+        return version(distribution)
+    except PackageNotFoundError:
+        return None
 
 
 @lru_cache(maxsize=16)
