@@ -90,6 +90,20 @@ def test_edited_comment_reruns_nothing(finished):
     assert "Nothing to be done" in finished.run()
 
 
+def test_another_version_of_a_library_reruns_the_stages_that_use_it(finished):
+    """Contract: Snakemake notices it, and the store does not take what the version before had made."""
+    finished.edit("src/threedfs/stages/fuse_object.py", "def run", "import maxflow\n\n\ndef run")
+    assert jobs_done(finished.run())["fuse_object"] == 1
+    assert "Nothing to be done" in finished.run()
+    finished.edit(
+        "src/threedfs/store/code.py",
+        "return version(distribution)",
+        'return version(distribution) + "+next" * (distribution == "PyMaxflow")',
+    )
+    assert jobs_done(finished.run()) == Counter(fuse_object=1)
+    assert "Nothing to be done" in finished.run()
+
+
 def test_touched_input_reruns_nothing_that_computes(finished):
     (finished.folder / "resources/sample/video.mp4").touch()
     assert jobs_done(finished.run()) == Counter()

@@ -6,7 +6,7 @@ import sys
 from threedfs.densify.engine import choose_engine
 from threedfs.errors import UserError
 from threedfs.params.sequences import load_sequences
-from threedfs.store.code import digest_code
+from threedfs.store.code import digest_code, library_versions
 from threedfs.store.digests import InputDigests
 
 NOTES = sys.stderr if workflow.is_main_process else None  # jobs read the rules again
@@ -34,8 +34,9 @@ wildcard_constraints:
 
 
 def code_of(stage, *modules):
-    """Return the digest of a stage's code: an edit reruns the stage, a comment does not."""
-    return digest_code(f"threedfs.stages.{stage}", *modules).digest
+    """Return the digest of a stage's code, and the versions of its libraries: what changes either reruns the stage."""
+    code = digest_code(f"threedfs.stages.{stage}", *modules)
+    return {"digest": code.digest, "versions": library_versions(code.libraries)}
 
 
 def settings_of(stage):
