@@ -123,6 +123,19 @@ def measure_scatter(samples: SurfaceSamples, sdf: np.ndarray, grid: VoxelGrid) -
     return float(np.median(apart)) / (slope * grid.spacing) if len(apart) else 0.0
 
 
+def believe_scattered(scatter: float, limit: float) -> float:
+    """Return how much points count that scatter so far, in (0, 1]: beyond a limit (same unit) as the inverse variance.
+
+    Not in the paper, which believes all points alike.
+
+    Examples
+    --------
+    >>> believe_scattered(0.3, 0.6), believe_scattered(1.2, 0.6)
+    (1.0, 0.25)
+    """
+    return (limit / max(scatter, limit)) ** 2
+
+
 def average_in_cells(samples: SurfaceSamples, size: float, belief: float = 1.0) -> SurfaceSamples:
     """Return one sample for every cell of space that has some: their mean by trust, with their trust together.
 

@@ -8,7 +8,13 @@ import numpy as np
 
 from threedfs.deform.bridges import keep_apart
 from threedfs.deform.correction import CorrectionRule, correct_zero_crossing
-from threedfs.deform.evidence import average_in_cells, check_samples, measure_scatter, take_points
+from threedfs.deform.evidence import (
+    average_in_cells,
+    believe_scattered,
+    check_samples,
+    measure_scatter,
+    take_points,
+)
 from threedfs.io.oriented_points import read_oriented_points
 from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.job import Job
@@ -51,7 +57,7 @@ def run(
         check_samples(samples, (place.low + place.high) / 2, place.plane)
         if params.cell > 0:
             scatter = measure_scatter(samples, fused.sdf, fused.grid)
-            belief = (params.scatter / max(scatter, params.scatter)) ** 2
+            belief = believe_scattered(scatter, params.scatter)
             job.progress.note(f"points scatter by {scatter:.2f} voxels and count {belief:.2f} times")
             samples = average_in_cells(samples, params.cell * fused.grid.spacing, belief)
         sdf = correct_zero_crossing(

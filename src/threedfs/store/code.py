@@ -84,12 +84,11 @@ def library_versions(libraries: tuple[str, ...]) -> dict[str, str]:
     """
     versions = {}
     for library in libraries:
-        pinned, *others = _DISTRIBUTIONS.get(library, (library,))
-        found = {name: _find_version(name) for name in (pinned, *others)}
-        if found[pinned]:
-            versions[library] = found[pinned]
-        elif any(found.values()):
-            versions[library] = next(f"{number} ({name})" for name, number in found.items() if number)
+        names = _DISTRIBUTIONS.get(library, (library,))
+        installed = [(name, number) for name in names if (number := _find_version(name))]
+        if installed:
+            name, number = installed[0]
+            versions[library] = number if name == names[0] else f"{number} ({name})"
     return versions
 
 
