@@ -3,9 +3,9 @@
 import cv2
 import numpy as np
 import pytest
+from threedfs.frames.undistort import assign_cameras, undistort_image, valid_pixels
 
 from threedfs.errors import UserError
-from threedfs.frames.undistort import assign_cameras, undistort_image, valid_pixels
 from threedfs.geometry.distortion import distort, undistort
 from threedfs.geometry.projection import pixel_grid
 from threedfs.types import Camera

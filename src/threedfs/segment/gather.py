@@ -55,10 +55,8 @@ class Scene:
     clearance : float
         Least height of the object above the plane, scene units.
     views : mapping of str to View
-        By the name of the keyframe, like images (H, W, 3) uint8 RGB, superpixels, depth (H, W), its confidence (H, W)
-        and semi-dense depth (H, W), NaN where there is none.
-    valid : (H, W) bool
-        Pixels that show the scene.
+        By the name of the keyframe, like images (H, W, 3) uint8 RGB, which of their pixels show the scene (H, W) bool,
+        superpixels, depth (H, W), its confidence (H, W) and semi-dense depth (H, W), NaN where there is none.
     """
 
     grid: VoxelGrid
@@ -70,7 +68,7 @@ class Scene:
     clearance: float
     views: Mapping[str, View]
     images: Mapping[str, np.ndarray]
-    valid: np.ndarray
+    valid: Mapping[str, np.ndarray]
     superpixels: Mapping[str, Superpixels]
     depth: Mapping[str, np.ndarray]
     confidence: Mapping[str, np.ndarray]

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from threedfs.io.consistency import read_consistency
+from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_depth_map
-from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.point_clouds import read_semidense_maps
 from threedfs.io.segmentation import Segmentation, write_segmentation
@@ -29,7 +29,7 @@ def run(
     field: Path,
     support: Path,
     keyframes: Path,
-    undistorted: Path,
+    crops: Path,
     superpixels: list[Path],
     semidense: list[Path],
     depth: list[Path],
@@ -44,7 +44,7 @@ def run(
         read_volume(field),
         read_support(support),
         read_keyframes(keyframes),
-        read_frames(undistorted),
+        read_crops(crops),
     )
     views = {name: entry.view for name, entry in entries.items()}
     trust = read_consistency(consistency)
@@ -60,7 +60,7 @@ def run(
         ),
         views=views,
         images={name: store.image(name) for name in views},
-        valid=store.valid,
+        valid={name: store.valid_of(name) for name in views},
         superpixels={path.name.removesuffix(".zarr.zip"): read_superpixels(path) for path in superpixels},
         depth={path.name.removesuffix(".zarr.zip"): read_depth_map(path).depth for path in depth},
         confidence={name: trust.read(name).confidence for name in views},

@@ -1,0 +1,72 @@
+"""A crop's pixels, resampled once from those that were filmed, with the lens undistorted in the same step."""
+
+from __future__ import annotations
+
+from math import ceil
+
+import cv2
+import numpy as np
+
+from threedfs.frames.scale import shrink
+from threedfs.geometry.lens import Lens
+from threedfs.geometry.projection import pixel_grid
+from threedfs.types import Camera
+
+_FOOTPRINT = 1.0
+"""Pixels on either side, beside the nearest ones, that cv2.INTER_CUBIC reads."""
+_NOWHERE = -1e4
+"""A coordinate outside any image; cv2.remap must not be given NaN."""
+
+
+def resample(image: np.ndarray, lens: Lens, camera: Camera) -> tuple[np.ndarray, np.ndarray]:
+    """Return what an ideal camera at the same place sees, and which of its pixels the image shows.
+
+    Bicubic on a grid at least as fine as the image, then averaged over each pixel's area, so that nothing aliases.
+
+    Parameters
+    ----------
+    image : (Hs, Ws, 3) uint8
+        As filmed.
+    lens : Lens
+        Of the image.
+    camera : Camera
+        Of the crop.
+
+    Returns
+    -------
+    crop : (H, W, 3) uint8
+        Repeats the border where the image shows nothing.
+    valid : (H, W) bool
+        As `find_valid` returns it.
+    """
+    finer = _refinement(lens, camera)
+    places = _filmed_places(lens, camera, finer)
+    sampled = cv2.remap(image, places[..., 0], places[..., 1], cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
+    return shrink(sampled, camera.shape), _are_inside(places, lens, finer)
+
+
+def find_valid(lens: Lens, camera: Camera) -> np.ndarray:
+    """Say which pixels (H, W) bool of a crop are made from pixels of the image alone."""
+    finer = _refinement(lens, camera)
+    return _are_inside(_filmed_places(lens, camera, finer), lens, finer)
+
+
+def _refinement(lens: Lens, camera: Camera) -> int:
+    """Return the whole number of samples along a crop's pixel at which they lie no farther apart than the image's."""
+    return max(1, ceil(lens.camera.fx / camera.fx - 1e-3))
+
+
+def _filmed_places(lens: Lens, camera: Camera, finer: int) -> np.ndarray:
+    """Return where each sample of an ideal camera lies in the image as filmed: (H, W, 2) float32, (u, v)."""
+    fine = Lens(camera).resize(camera.width * finer, camera.height * finer).camera
+    ideal = Lens(fine).normalise(np.stack(pixel_grid(fine), axis=-1))
+    return np.nan_to_num(lens.denormalise(ideal), nan=_NOWHERE).astype(np.float32)
+
+
+def _are_inside(places: np.ndarray, lens: Lens, finer: int) -> np.ndarray:
+    """Say which crop pixels have all their samples on the image; its outermost pixels count if no lens bends it."""
+    reach = _FOOTPRINT if lens.k1 or lens.k2 else -0.5
+    last = np.array([lens.camera.width, lens.camera.height]) - 1 - reach
+    shown = ((places >= reach) & (places <= last)).all(axis=-1)
+    rows, columns = shown.shape[0] // finer, shown.shape[1] // finer
+    return shown.reshape(rows, finer, columns, finer).all(axis=(1, 3))
