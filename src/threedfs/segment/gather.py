@@ -10,10 +10,10 @@ import numpy as np
 from scipy import ndimage
 
 from threedfs.errors import UserError
-from threedfs.fusion.fixation import find_fixation, viewing_distance
 from threedfs.geometry.projection import backproject_map
-from threedfs.object.component import choose_component, mark_points
-from threedfs.object.field import add_foot, height_above
+from threedfs.locate.component import choose_component, mark_points
+from threedfs.locate.fixation import find_fixation, viewing_distance
+from threedfs.locate.height import add_foot, height_above
 from threedfs.segment.color_model import lab_image
 from threedfs.segment.energy import BACKGROUND, OBJECT
 from threedfs.segment.evidence import ImageEvidence, VoxelEvidence

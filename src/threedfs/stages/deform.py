@@ -18,7 +18,7 @@ from threedfs.deform.evidence import (
 from threedfs.io.oriented_points import read_oriented_points
 from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.job import Job
-from threedfs.object.field import height_above, least_height
+from threedfs.locate.height import height_above, least_height
 from threedfs.params.deform import DeformParams
 
 

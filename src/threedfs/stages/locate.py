@@ -7,17 +7,17 @@ from pathlib import Path
 import numpy as np
 
 from threedfs.errors import UserError
-from threedfs.fusion.fixation import find_fixation, find_up, viewing_distance
-from threedfs.fusion.support import SupportRule, find_support
-from threedfs.fusion.surface import zero_crossings
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.point_clouds import read_semidense_points
 from threedfs.io.points import read_points
 from threedfs.io.volumes import Support, read_volume, write_support
 from threedfs.job import Job
-from threedfs.object.box import enclose_object, measure_thickness
-from threedfs.object.component import choose_standing_component, mark_points
-from threedfs.object.field import height_above
+from threedfs.locate.box import enclose_object, measure_thickness
+from threedfs.locate.component import choose_standing_component, mark_points
+from threedfs.locate.fixation import find_fixation, find_up, viewing_distance
+from threedfs.locate.height import height_above
+from threedfs.locate.support import SupportRule, find_support
+from threedfs.locate.surface import zero_crossings
 from threedfs.params.locate import LocateParams
 
 _SAMPLE = 4000  # semi-dense points of a keyframe that take part in the search for the plane

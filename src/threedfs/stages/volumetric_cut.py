@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from threedfs.fusion.fixation import find_fixation
 from threedfs.geometry.grid import cover_box, voxel_index
 from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import read_keyframes
@@ -14,7 +13,8 @@ from threedfs.io.point_clouds import read_semidense_points
 from threedfs.io.segmentation import Segmentation, write_segmentation
 from threedfs.io.volumes import read_support
 from threedfs.job import Job
-from threedfs.object.field import height_above
+from threedfs.locate.fixation import find_fixation
+from threedfs.locate.height import height_above
 from threedfs.params.volumetric_cut import VolumetricCutParams
 from threedfs.segment.volumetric import VolumetricRule, cut_volume
 

@@ -1,12 +1,12 @@
-"""Property tests of the choice of the object's component, its box and its field."""
+"""Property tests of the choice of the object's component, its box and its foot."""
 
 import numpy as np
 import pytest
 
 from threedfs.geometry.grid import voxel_centres
-from threedfs.object.box import enclose_object, measure_thickness
-from threedfs.object.component import choose_component, choose_standing_component, mark_points
-from threedfs.object.field import add_foot, height_above, mask_field
+from threedfs.locate.box import enclose_object, measure_thickness
+from threedfs.locate.component import choose_component, choose_standing_component, mark_points
+from threedfs.locate.height import add_foot, height_above
 from threedfs.types import Plane, VoxelGrid
 
 GRID = VoxelGrid(np.zeros(3), 0.1, (40, 40, 30))
@@ -116,20 +116,6 @@ def test_foot_reaches_the_plane_straight_below():
     expected = np.zeros(GRID.shape, bool)
     expected[16:24, 17:24, 4:14] = True
     assert (owned == expected).all()
-
-
-def test_field_is_negative_in_the_object_alone():
-    """Property: others and what is under the plane become empty; the zero level beside the object stays in place."""
-    interior = blocks()
-    interior[:, :, :5] = True
-    sdf = np.where(interior, np.float32(-0.5), np.float32(0.25))
-    owned = np.zeros(GRID.shape, bool)
-    owned[16:24, 17:24, 5:14] = True
-    field = mask_field(sdf, owned, height_above(TABLE, GRID), GRID.spacing)
-    assert ((field < 0) == owned).all()
-    assert (field[15, 17:24, 6:14] == np.float32(0.25)).all()
-    assert field[20, 20, 5] == pytest.approx(-0.5)
-    assert field[20, 20, 4] == pytest.approx(0.5, abs=1e-5), "half a voxel below the plane"
 
 
 def test_an_uneven_floor_does_not_join_the_object_with_the_wall():
