@@ -88,10 +88,11 @@ def test_box_holds_the_object_and_its_foot():
     """Exact: from face to face, down to the plane, and the margin shared by both sides."""
     voxels = np.zeros(GRID.shape, bool)
     voxels[16:24, 17:24, 8:14] = True
-    low, high = enclose_object(voxels, GRID, TABLE, margin=0.5)
+    box = enclose_object(voxels, GRID, TABLE, margin=0.5)
     longest = 1.35 - 0.40  # along z, from half a voxel below the plane to the top of voxel 13
-    np.testing.assert_allclose(low, np.array([1.55, 1.65, 0.40]) - 0.25 * longest, atol=1e-12)
-    np.testing.assert_allclose(high, np.array([2.35, 2.35, 1.35]) + 0.25 * longest, atol=1e-12)
+    corners = box.corners()
+    np.testing.assert_allclose(corners.min(axis=0), np.array([1.55, 1.65, 0.40]) - 0.25 * longest, atol=1e-12)
+    np.testing.assert_allclose(corners.max(axis=0), np.array([2.35, 2.35, 1.35]) + 0.25 * longest, atol=1e-12)
 
 
 @pytest.mark.parametrize(("side", "thickness"), [((8, 9, 5), 0.5), ((20, 1, 20), 0.1), ((3, 3, 3), 0.3)])

@@ -11,7 +11,7 @@ from threedfs.locate.fixation import find_fixation, find_up, viewing_distance
 from threedfs.locate.region import scene_region
 from threedfs.locate.support import SupportRule, find_support, settle_support
 from threedfs.locate.surface import zero_crossings
-from threedfs.types import Camera, View
+from threedfs.types import Box, Camera, View
 
 RULE = SupportRule(tolerance=0.015, doublings=3, reach=0.5, max_tilt=75.0, min_share=0.3, candidates=2000)
 UP = np.array([0.0, 0, 1])
@@ -175,7 +175,7 @@ def test_least_squares_plane_is_exact():
 
 def test_zero_crossings_lie_on_the_surface_and_not_beside_unseen_space():
     """Exact: of a linear field, its plane; the border of unseen voxels is none."""
-    grid = cover_box(np.zeros(3), np.ones(3), 10)
+    grid = cover_box(Box(np.eye(3), np.zeros(3), np.ones(3)), 10)
     sdf = (voxel_centres(grid) @ UP - 0.52).astype(np.float32)
     seen = np.ones(grid.shape, np.uint8)
     seen[:5] = 0
@@ -206,7 +206,8 @@ def test_up_is_found_however_the_phone_was_held(quarter_turns):
 def test_region_is_the_papers_within_limits():
     """Exact: median plus and minus two deviations, but not farther nor nearer than the reaches."""
     points = np.random.default_rng(0).normal([1, 2, 3], [0.01, 0.2, 0.5], (1000, 3))
-    low, high = scene_region(points, 2.0, np.array([1.0, 2, 3]), least_reach=0.1, reach=0.6)
+    region = scene_region(points, 2.0, np.array([1.0, 2, 3]), least_reach=0.1, reach=0.6)
+    low, high = region.low, region.high
     centre, spread = np.median(points, axis=0), points.std(axis=0)
     np.testing.assert_allclose([low[0], high[0]], [0.9, 1.1])
     np.testing.assert_allclose([low[1], high[1]], [centre[1] - 2 * spread[1], centre[1] + 2 * spread[1]])

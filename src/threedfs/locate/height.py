@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from threedfs.geometry.grid import voxel_index
+from threedfs.geometry.grid import voxel_index, world_from_index
 from threedfs.types import Plane, VoxelGrid
 
 
 def height_above(plane: Plane, grid: VoxelGrid) -> np.ndarray:
     """Return the signed distance of every voxel from the plane, (nx, ny, nz) float32, scene units."""
-    heights = [grid.axis(d) * plane.normal[d] for d in range(3)]
+    heights = [grid.axis(d) * share for d, share in enumerate(grid.axes @ plane.normal)]
     return (heights[0][:, None, None] + heights[1][:, None] + heights[2] + plane.offset).astype(np.float32)
 
 
@@ -50,7 +50,7 @@ def add_foot(voxels: np.ndarray, height: np.ndarray, grid: VoxelGrid, plane: Pla
     # Heights of the voxels just above the clearance differ by up to a voxel's diagonal: look there.
     low = np.argwhere((height <= clearance) & (height > -grid.spacing))
     lift = clearance + 0.87 * grid.spacing - height[tuple(low.T)]
-    points = grid.origin + grid.spacing * low + lift[:, None] * plane.normal
+    points = world_from_index(grid, low) + lift[:, None] * plane.normal
     above, kept = voxel_index(grid, points)
     owned = voxels.copy()
     owned[tuple(low[kept].T)] |= voxels[tuple(above.T)]

@@ -43,7 +43,7 @@ def run(
         params.region_least_reach * distance,
         params.region_reach * distance,
     )
-    grid = cover_box(*region, params.longest_side)
+    grid = cover_box(region, params.longest_side)
     fused = SoftMaximum(
         grid,
         params.clip_distance * grid.spacing,

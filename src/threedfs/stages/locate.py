@@ -80,7 +80,7 @@ def run(
             "an object lower than locate.clearance or without any texture is missed: lower locate.clearance, or film "
             "from nearer."
         )
-    low, high_corner = enclose_object(chosen.voxels, grid, found.plane, params.box_margin)
+    box = enclose_object(chosen.voxels, grid, found.plane, params.box_margin)
     figures = {
         "plane_share": found.share,
         "plane_noise": found.noise,
@@ -95,4 +95,4 @@ def run(
         f"support plane with {found.share:.0%} of the nearby upward-facing surface; object of {chosen.voxels.sum()} "
         f"voxels, {chosen.support} of them with semi-dense points, before {chosen.rivals} other components"
     )
-    write_support(support, Support(found.plane, low, high_corner, figures), job.header)
+    write_support(support, Support(found.plane, box, figures), job.header)

@@ -45,7 +45,7 @@ def run(
     place = read_support(support)
     entries = read_keyframes(keyframes)
     views = [entry.view for entry in entries.values()]
-    fixation = find_fixation(views, (place.low + place.high) / 2)
+    fixation = find_fixation(views, place.box.centre)
     clearance = least_height(params.clearance, params.noise_clearance, grid.spacing, place.figures["plane_noise"])
     height = height_above(place.plane, grid)
     holds = np.zeros(grid.shape, bool)

@@ -53,8 +53,7 @@ def run(
         fused.sdf,
         fused.seen,
         place.plane,
-        place.low,
-        place.high,
+        place.box,
         clearance=least_height(
             params.clearance, params.noise_clearance, fused.grid.spacing, place.figures["plane_noise"]
         ),

@@ -32,7 +32,7 @@ def run(
     """Read images, the object's box and semi-dense points; write voxel labels."""
     place, entries, store = read_support(support), read_keyframes(keyframes), read_frames(undistorted)
     views = {name: entry.view for name, entry in entries.items()}
-    grid = cover_box(place.low, place.high, params.longest_side)
+    grid = cover_box(place.box, params.longest_side)
     votes = np.zeros(grid.shape, np.float32)
     for cloud in read_semidense_points(entries, semidense, params.point_deviation):
         index, _ = voxel_index(grid, cloud)
@@ -43,7 +43,7 @@ def run(
         grid,
         height_above(place.plane, grid),
         votes,
-        find_fixation(list(views.values()), (place.low + place.high) / 2),
+        find_fixation(list(views.values()), place.box.centre),
         VolumetricRule(
             components=params.components,
             color_pixels=params.color_pixels,
