@@ -65,7 +65,7 @@ def measure(results: Path, folder: Path, level: float, corrections: Mapping[str,
     job = Job(Progress("jitter", io.StringIO()), {}, 2, 0)
     support = results / "07_fusion/support.json"
     place, rng = read_support(support), np.random.default_rng(0)
-    deviation = level / 100 * float((place.high - place.low).max())
+    deviation = level / 100 * place.box.longest
     keyframes = read_keyframes(results / "03_keyframes/keyframes.json")
     steps = rng.normal(0, deviation, (len(keyframes), 3))
     write_keyframes(folder / "keyframes.json", jitter_cameras(keyframes, steps), {})

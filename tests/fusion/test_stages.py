@@ -118,9 +118,10 @@ def test_support_and_box(results, table):
     support = read_support(results / "support.json")
     assert np.degrees(np.arccos(support.plane.normal[2])) < 0.5
     assert abs(support.plane.offset) < 0.01  # a third of a scene voxel
-    assert (support.low < table.centre - table.radius).all()
-    assert (support.high > table.centre + table.radius).all()
-    assert (support.high - support.low).max() < 2 * 2 * table.radius
+    np.testing.assert_array_equal(support.box.axes[2], support.plane.normal)
+    assert (support.box.low < support.box.axes @ table.centre - table.radius).all()
+    assert (support.box.high > support.box.axes @ table.centre + table.radius).all()
+    assert support.box.longest < 2 * 2 * table.radius
     assert support.figures["thickness"] == pytest.approx(2 * table.radius, rel=0.2)
 
 

@@ -8,7 +8,7 @@ from threedfs.geometry.grid import cover_box, voxel_centres
 from threedfs.geometry.projection import backproject, pixel_grid
 from threedfs.segment.gather import Scene
 from threedfs.segment.superpixels import split_image
-from threedfs.types import Camera, Plane, View
+from threedfs.types import Box, Camera, Plane, View
 
 CAMERA = Camera(120, 90, 130.0, 130.0, 59.5, 44.5)
 RADIUS, CLIP = 0.2, 0.08
@@ -49,8 +49,8 @@ def make_scene(views: int = 8, shrink: float = 0.0, size: int = 40) -> tuple[Sce
     """Return the scene, its field that of a ball smaller by `shrink`, and the true masks."""
     rng = np.random.default_rng(0)
     looks = [look(angle) for angle in np.linspace(0, 2 * np.pi, views, endpoint=False)]
-    low, high = np.array([-0.32, -0.32, -0.1]), np.array([0.32, 0.32, 0.5])
-    grid = cover_box(low, high, size)
+    box = Box(np.eye(3), np.array([-0.32, -0.32, -0.1]), np.array([0.32, 0.32, 0.5]))
+    grid = cover_box(box, size)
     centres = voxel_centres(grid)
     ball = np.linalg.norm(centres - CENTRE, axis=-1) - (RADIUS - shrink)
     sdf = np.clip(np.minimum(ball, centres[..., 2]) / CLIP, -1, 1).astype(np.float32)
@@ -62,8 +62,7 @@ def make_scene(views: int = 8, shrink: float = 0.0, size: int = 40) -> tuple[Sce
         sdf,
         np.full(grid.shape, views, np.uint8),
         PLANE,
-        low,
-        high,
+        box,
         clearance=grid.spacing,
         views={view.name: view for view in looks},
         images={name: image for name, (image, _, _) in shots.items()},

@@ -12,7 +12,7 @@ from scipy import ndimage
 from threedfs.errors import UserError
 from threedfs.evaluate.masks import intersection_over_union
 from threedfs.geometry.grid import voxel_centres
-from threedfs.object.field import height_above
+from threedfs.locate.height import height_above
 from threedfs.params.segment import SegmentParams
 from threedfs.params.volumetric_cut import VolumetricCutParams
 from threedfs.segment.energy import OBJECT

@@ -15,7 +15,7 @@ from threedfs.segment.outline import draw_voxels, grow_voxels, largest_piece, su
 from threedfs.segment.pairwise import link_voxels, superpixel_weights, voxel_pairs
 from threedfs.segment.superpixels import Superpixels, split_image
 from threedfs.segment.unaries import carve_unary, scene_unary, sdf_unary, silhouette_unary, soften_silhouette
-from threedfs.types import Camera, View
+from threedfs.types import Box, Camera, View
 
 CAMERA = Camera(64, 48, 60.0, 60.0, 31.5, 23.5)
 
@@ -133,7 +133,7 @@ def test_voxel_pairs_have_an_open_end_each_once():
 
 def test_links_count_shares_of_superpixels():
     found = halves()
-    grid = cover_box(np.zeros(3), np.ones(3), 2)
+    grid = cover_box(Box(np.eye(3), np.zeros(3), np.ones(3)), 2)
     points = np.array([[0.2, 0.2, 0.2], [0.3, 0.1, 0.2], [0.8, 0.8, 0.8], [3.0, 0.0, 0.0]])
     pairs, share = link_voxels(found, points, np.array([0, 1, 2, 3]), np.array([0, 1, 6, 7]), grid)
     assert pairs.tolist() == [[0, 0], [1, 7]]
@@ -141,7 +141,7 @@ def test_links_count_shares_of_superpixels():
 
 
 def test_silhouette_of_voxels_is_that_of_the_ball_they_fill():
-    grid = cover_box(-np.ones(3), np.ones(3), 60)
+    grid = cover_box(Box(np.eye(3), -np.ones(3), np.ones(3)), 60)
     ball = np.linalg.norm(voxel_centres(grid), axis=-1) < 0.7
     view = view_from(4.0)
     mask = draw_voxels(ball, grid, {"front": view})["front"]

@@ -10,10 +10,11 @@ import numpy as np
 from scipy import ndimage
 
 from threedfs.errors import UserError
-from threedfs.fusion.fixation import find_fixation, viewing_distance
+from threedfs.geometry.grid import world_from_index
 from threedfs.geometry.projection import backproject_map
-from threedfs.object.component import choose_component, mark_points
-from threedfs.object.field import add_foot, height_above
+from threedfs.locate.component import choose_component, mark_points
+from threedfs.locate.fixation import find_fixation, viewing_distance
+from threedfs.locate.height import add_foot, height_above
 from threedfs.segment.color_model import lab_image
 from threedfs.segment.energy import BACKGROUND, OBJECT
 from threedfs.segment.evidence import ImageEvidence, VoxelEvidence
@@ -29,7 +30,7 @@ from threedfs.segment.outline import draw_voxels
 from threedfs.segment.pairwise import link_voxels, superpixel_weights
 from threedfs.segment.superpixels import Superpixels
 from threedfs.segment.table import match_table, picture_table
-from threedfs.types import Plane, View, VoxelGrid
+from threedfs.types import Box, Plane, View, VoxelGrid
 
 _SURE_LEVEL = -0.5
 """Field of voxels that hide the support surface for certain."""
@@ -50,8 +51,8 @@ class Scene:
         The field, and how many views see each voxel.
     plane : Plane
         The support surface.
-    low, high : (3,) float64
-        The object's box.
+    box : Box
+        The object's, standing on the plane.
     clearance : float
         Least height of the object above the plane, scene units.
     views : mapping of str to View
@@ -63,8 +64,7 @@ class Scene:
     sdf: np.ndarray
     seen: np.ndarray
     plane: Plane
-    low: np.ndarray
-    high: np.ndarray
+    box: Box
     clearance: float
     views: Mapping[str, View]
     images: Mapping[str, np.ndarray]
@@ -123,7 +123,7 @@ def gather_voxels(scene: Scene, rule: GatherRule) -> tuple[VoxelEvidence, Bounds
         If the field holds no solid with semi-dense points above the support plane.
     """
     views = list(scene.views.values())
-    fixation = find_fixation(views, (scene.low + scene.high) / 2)
+    fixation = find_fixation(views, scene.box.centre)
     height = height_above(scene.plane, scene.grid)
     high = height > scene.clearance
     holds = np.zeros(scene.grid.shape, bool)
@@ -168,13 +168,12 @@ def gather_images(
     )
     if rule.fill_outer:
         outer = {name: ndimage.binary_fill_holes(mask) for name, mask in outer.items()}
-    reach = rule.table_reach * (scene.high - scene.low).max()
     table = None
     if rule.table:
         covered = {name: cv2.dilate(mask.astype(np.uint8), np.ones((5, 5))) > 0 for name, mask in hides.items()}
-        low, high = scene.low - reach, scene.high + reach
-        solid = scene.grid.origin + scene.grid.spacing * np.argwhere(bounds.hides)
-        table = picture_table(scene.images, scene.views, covered, scene.valid, scene.plane, solid, low, high)
+        around = scene.box.grow(rule.table_reach * scene.box.longest)
+        solid = world_from_index(scene.grid, np.argwhere(bounds.hides))
+        table = picture_table(scene.images, scene.views, covered, scene.valid, scene.plane, solid, around)
     evidence = {}
     for name, view in scene.views.items():
         superpixels = scene.superpixels[name]
@@ -184,9 +183,9 @@ def gather_images(
             guessed = rng.random(superpixels.count) < 0.5
         first = np.where(decided == UNDECIDED, np.where(guessed, OBJECT, BACKGROUND), decided).astype(np.uint8)
         points = backproject_map(view, scene.depth[name])
-        outside = np.isfinite(scene.depth[name]) & ~((points >= scene.low) & (points <= scene.high)).all(axis=-1)
+        outside = np.isfinite(scene.depth[name]) & ~scene.box.contains(points)
         pairs, weight = _link(scene, volume, name, points, rule)
-        middle = view.cam_from_world[2] @ np.append((scene.low + scene.high) / 2, 1)
+        middle = view.cam_from_world[2] @ np.append(scene.box.centre, 1)
         evidence[name] = ImageEvidence(
             view,
             scene.images[name],

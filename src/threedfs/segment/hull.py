@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 from scipy import ndimage
 
+from threedfs.geometry.grid import voxel_places
 from threedfs.segment.lookup import nearest_pixels
 from threedfs.segment.outline import depth_inside, draw_voxels
 from threedfs.types import View, VoxelGrid
@@ -63,7 +64,7 @@ def fit_masks(
         Views that show a voxel on a gap before it is filled.
     """
     places = np.flatnonzero(allowed)
-    centres = grid.origin + grid.spacing * np.stack(np.unravel_index(places, grid.shape), axis=1)
+    centres = voxel_places(grid, places)
     middle = np.append(centres[solid.reshape(-1)[places]].mean(axis=0) if solid.any() else centres.mean(axis=0), 1)
     covered = draw_voxels(solid, grid, views)
     distances = np.full((len(views), len(places)), -_STEPS, np.int16)

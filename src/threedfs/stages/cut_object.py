@@ -15,8 +15,9 @@ from threedfs.io.poses import read_poses
 from threedfs.io.segmentation import Segmentation, read_segmentation
 from threedfs.io.volumes import Volume, read_support, read_volume
 from threedfs.job import Job
+from threedfs.locate.height import height_above
 from threedfs.object.extract import extract_surface
-from threedfs.object.field import height_above, mask_field
+from threedfs.object.field import mask_field
 from threedfs.object.smooth import smooth_mesh
 from threedfs.params.cut_object import CutObjectParams
 from threedfs.segment.energy import OBJECT

@@ -18,7 +18,7 @@ from threedfs.deform.evidence import (
 from threedfs.io.oriented_points import read_oriented_points
 from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.job import Job
-from threedfs.object.field import height_above, least_height
+from threedfs.locate.height import height_above, least_height
 from threedfs.params.deform import DeformParams
 
 
@@ -54,12 +54,12 @@ def run(
             full_sightings=params.full_sightings,
         )
         place = read_support(support)
-        check_samples(samples, (place.low + place.high) / 2, place.plane)
+        check_samples(samples, place.box.centre, place.plane)
         if params.cell > 0:
             scatter = measure_scatter(samples, fused.sdf, fused.grid)
             belief = believe_scattered(scatter, params.scatter)
             job.progress.note(f"points scatter by {scatter:.2f} voxels and count {belief:.2f} times")
-            samples = average_in_cells(samples, params.cell * fused.grid.spacing, belief)
+            samples = average_in_cells(samples, fused.grid, params.cell, belief)
         sdf = correct_zero_crossing(
             fused.sdf,
             fused.seen,

@@ -63,8 +63,7 @@ def run(
             rule = FusionRule(
                 params.min_pixels, params.max_depth_error, params.max_reprojection_error, params.max_normal_error
             )
-            place = read_support(support)
-            found = fuse_workspace(workspace, rule, place.low, place.high)
+            found = fuse_workspace(workspace, rule, read_support(support).box)
     job.progress.note(f"{len(found.xyz)} surface points ({engine})")
     write_oriented_points(cloud, found, [view.name for view in views], engine, job.header)
 

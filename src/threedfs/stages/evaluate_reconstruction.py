@@ -11,13 +11,14 @@ from threedfs.evaluate.depth_error import DepthPairs, pair_depths
 from threedfs.evaluate.figures import Figure, depth_figures, pose_figures, reconstruction_figures
 from threedfs.evaluate.pose_error import measure_poses
 from threedfs.evaluate.rendering import MeshRenderer, filmed_pixels, image_points, sample_nearest
+from threedfs.evaluate.scores import Metric
 from threedfs.evaluate.true_cameras import TrueCameras, relate_cameras
 from threedfs.io.depth_maps import read_depth_map
 from threedfs.io.frames import FrameStore, read_frames
 from threedfs.io.given_cameras import read_given_cameras
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
-from threedfs.io.metrics import Metric, write_metrics
+from threedfs.io.metrics import write_metrics
 from threedfs.io.poses import Poses, read_poses
 from threedfs.io.truth import read_true_depth
 from threedfs.io.truth_files import find_depth_images

@@ -7,17 +7,17 @@ from pathlib import Path
 import numpy as np
 
 from threedfs.errors import UserError
-from threedfs.fusion.fixation import find_fixation, find_up, viewing_distance
-from threedfs.fusion.support import SupportRule, find_support
-from threedfs.fusion.surface import zero_crossings
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.point_clouds import read_semidense_points
 from threedfs.io.points import read_points
 from threedfs.io.volumes import Support, read_volume, write_support
 from threedfs.job import Job
-from threedfs.object.box import enclose_object, measure_thickness
-from threedfs.object.component import choose_standing_component, mark_points
-from threedfs.object.field import height_above
+from threedfs.locate.box import enclose_object, measure_thickness
+from threedfs.locate.component import choose_standing_component, mark_points
+from threedfs.locate.fixation import find_fixation, find_up, viewing_distance
+from threedfs.locate.height import height_above
+from threedfs.locate.support import SupportRule, find_support
+from threedfs.locate.surface import zero_crossings
 from threedfs.params.locate import LocateParams
 
 _SAMPLE = 4000  # semi-dense points of a keyframe that take part in the search for the plane
@@ -80,7 +80,7 @@ def run(
             "an object lower than locate.clearance or without any texture is missed: lower locate.clearance, or film "
             "from nearer."
         )
-    low, high_corner = enclose_object(chosen.voxels, grid, found.plane, params.box_margin)
+    box = enclose_object(chosen.voxels, grid, found.plane, params.box_margin)
     figures = {
         "plane_share": found.share,
         "plane_noise": found.noise,
@@ -95,4 +95,4 @@ def run(
         f"support plane with {found.share:.0%} of the nearby upward-facing surface; object of {chosen.voxels.sum()} "
         f"voxels, {chosen.support} of them with semi-dense points, before {chosen.rivals} other components"
     )
-    write_support(support, Support(found.plane, low, high_corner, figures), job.header)
+    write_support(support, Support(found.plane, box, figures), job.header)

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 
 from threedfs.errors import UserError
-from threedfs.fusion.fixation import find_fixation, viewing_distance
 from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import write_mesh
@@ -16,9 +15,11 @@ from threedfs.io.point_clouds import read_semidense_points
 from threedfs.io.poses import read_poses
 from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.job import Job
-from threedfs.object.component import choose_component, mark_points
+from threedfs.locate.component import choose_component, mark_points
+from threedfs.locate.fixation import find_fixation, viewing_distance
+from threedfs.locate.height import add_foot, height_above, least_height
 from threedfs.object.extract import extract_surface
-from threedfs.object.field import add_foot, height_above, least_height, mask_field
+from threedfs.object.field import mask_field
 from threedfs.params.object import ObjectParams
 
 
@@ -44,7 +45,7 @@ def run(
     place = read_support(support)
     entries = read_keyframes(keyframes)
     views = [entry.view for entry in entries.values()]
-    fixation = find_fixation(views, (place.low + place.high) / 2)
+    fixation = find_fixation(views, place.box.centre)
     clearance = least_height(params.clearance, params.noise_clearance, grid.spacing, place.figures["plane_noise"])
     height = height_above(place.plane, grid)
     holds = np.zeros(grid.shape, bool)

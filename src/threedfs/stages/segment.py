@@ -15,7 +15,7 @@ from threedfs.io.segmentation import Segmentation, write_segmentation
 from threedfs.io.superpixels import read_superpixels
 from threedfs.io.volumes import read_support, read_volume
 from threedfs.job import Job
-from threedfs.object.field import least_height
+from threedfs.locate.height import least_height
 from threedfs.params.segment import SegmentParams
 from threedfs.segment.energy import OBJECT
 from threedfs.segment.gather import GatherRule, Scene, gather_images, gather_voxels
@@ -53,8 +53,7 @@ def run(
         fused.sdf,
         fused.seen,
         place.plane,
-        place.low,
-        place.high,
+        place.box,
         clearance=least_height(
             params.clearance, params.noise_clearance, fused.grid.spacing, place.figures["plane_noise"]
         ),

@@ -38,8 +38,7 @@ def run(
     neighbours = entry.neighbours[: params.views]
     wanted = np.ones(entry.view.camera.shape, bool)
     if support:
-        place = read_support(support)
-        wanted = mask_box(entry.view, place.low, place.high)
+        wanted = mask_box(entry.view, read_support(support).box)
     found = match_patches(
         entry.view,
         prepare_grey(frames.image(keyframe), frames.valid_of(keyframe)),

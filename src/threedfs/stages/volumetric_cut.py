@@ -6,7 +6,6 @@ from pathlib import Path
 
 import numpy as np
 
-from threedfs.fusion.fixation import find_fixation
 from threedfs.geometry.grid import cover_box, voxel_index
 from threedfs.io.crops import read_crops
 from threedfs.io.keyframes import read_keyframes
@@ -14,7 +13,8 @@ from threedfs.io.point_clouds import read_semidense_points
 from threedfs.io.segmentation import Segmentation, write_segmentation
 from threedfs.io.volumes import read_support
 from threedfs.job import Job
-from threedfs.object.field import height_above
+from threedfs.locate.fixation import find_fixation
+from threedfs.locate.height import height_above
 from threedfs.params.volumetric_cut import VolumetricCutParams
 from threedfs.segment.volumetric import VolumetricRule, cut_volume
 
@@ -32,7 +32,7 @@ def run(
     """Read images, the object's box and semi-dense points; write voxel labels."""
     place, entries, store = read_support(support), read_keyframes(keyframes), read_crops(crops)
     views = {name: entry.view for name, entry in entries.items()}
-    grid = cover_box(place.low, place.high, params.longest_side)
+    grid = cover_box(place.box, params.longest_side)
     votes = np.zeros(grid.shape, np.float32)
     for cloud in read_semidense_points(entries, semidense, params.point_deviation):
         index, _ = voxel_index(grid, cloud)
@@ -43,7 +43,7 @@ def run(
         grid,
         height_above(place.plane, grid),
         votes,
-        find_fixation(list(views.values()), (place.low + place.high) / 2),
+        find_fixation(list(views.values()), place.box.centre),
         VolumetricRule(
             components=params.components,
             color_pixels=params.color_pixels,
