@@ -6,22 +6,24 @@ from math import ceil
 
 import cv2
 import numpy as np
+from numba import njit
 
 from threedfs.frames.scale import shrink
+from threedfs.geometry.distortion import turning_radius
 from threedfs.geometry.lens import Lens
-from threedfs.geometry.projection import pixel_grid
 from threedfs.types import Camera
 
 _FOOTPRINT = 1.0
 """Pixels on either side, beside the nearest ones, that cv2.INTER_CUBIC reads."""
 _NOWHERE = -1e4
-"""A coordinate outside any image; cv2.remap must not be given NaN."""
+"""A coordinate outside any image."""
 
 
 def resample(image: np.ndarray, lens: Lens, camera: Camera) -> tuple[np.ndarray, np.ndarray]:
     """Return what an ideal camera at the same place sees, and which of its pixels the image shows.
 
-    Bicubic on a grid at least as fine as the image, then averaged over each pixel's area, so that nothing aliases.
+    Interpolated on a grid at least as fine as the image, then averaged over each pixel's area, so that nothing aliases;
+    bicubic where pixels are as large as the image's.
 
     Parameters
     ----------
@@ -41,7 +43,9 @@ def resample(image: np.ndarray, lens: Lens, camera: Camera) -> tuple[np.ndarray,
     """
     finer = _refinement(lens, camera)
     places = _filmed_places(lens, camera, finer)
-    sampled = cv2.remap(image, places[..., 0], places[..., 1], cv2.INTER_CUBIC, borderMode=cv2.BORDER_REPLICATE)
+    # what is averaged afterwards needs no more than linear interpolation
+    way = cv2.INTER_CUBIC if finer == 1 else cv2.INTER_LINEAR
+    sampled = cv2.remap(image, places, None, way, borderMode=cv2.BORDER_REPLICATE)
     return shrink(sampled, camera.shape), _are_inside(places, lens, finer)
 
 
@@ -59,8 +63,27 @@ def _refinement(lens: Lens, camera: Camera) -> int:
 def _filmed_places(lens: Lens, camera: Camera, finer: int) -> np.ndarray:
     """Return where each sample of an ideal camera lies in the image as filmed: (H, W, 2) float32, (u, v)."""
     fine = Lens(camera).resize(camera.width * finer, camera.height * finer).camera
-    ideal = Lens(fine).normalise(np.stack(pixel_grid(fine), axis=-1))
-    return np.nan_to_num(lens.denormalise(ideal), nan=_NOWHERE).astype(np.float32)
+    places = np.empty((*fine.shape, 2), np.float32)
+    filmed = (lens.camera.fx, lens.camera.fy, lens.camera.cx, lens.camera.cy)
+    turning = min(turning_radius((lens.k1, lens.k2)) ** 2, np.finfo(np.float64).max)
+    _distort(fine.fx, fine.fy, fine.cx, fine.cy, filmed, (lens.k1, lens.k2), turning, places)
+    return places
+
+
+@njit(cache=True)
+def _distort(fx, fy, cx, cy, filmed, distortion, turning, places):
+    """Write where each pixel of an ideal camera lies in the image of a lens; as `geometry.distortion.distort`."""
+    for row in range(places.shape[0]):
+        y = (row - cy) / fy
+        for column in range(places.shape[1]):
+            x = (column - cx) / fx
+            square = x * x + y * y
+            if square < turning:
+                factor = 1 + square * (distortion[0] + square * distortion[1])
+                places[row, column, 0] = x * factor * filmed[0] + filmed[2]
+                places[row, column, 1] = y * factor * filmed[1] + filmed[3]
+            else:
+                places[row, column] = _NOWHERE
 
 
 def _are_inside(places: np.ndarray, lens: Lens, finer: int) -> np.ndarray:

@@ -10,7 +10,6 @@ from threedfs.crops.place import place_crops, shrink_view
 from threedfs.crops.resample import resample
 from threedfs.frames.decode import scan_source
 from threedfs.frames.scale import scale_camera
-from threedfs.geometry.grid import box_corners
 from threedfs.geometry.lens import Lens
 from threedfs.io.crops import Crop, write_crops
 from threedfs.io.keyframes import read_keyframes, read_needs_stereo, write_keyframes
@@ -54,8 +53,7 @@ def run(
     if whole:
         placed = [shrink_view(view, params.longest_side) for view in filmed]
     else:
-        box = read_support(support)
-        corners = box_corners(box.low, box.high)
+        corners = read_support(support).box.corners()
         placed = place_crops(filmed, corners, params.margin, params.pixels)
     of_frame = {view.name: (view, crop) for view, crop in zip(filmed, placed, strict=True)}
 
