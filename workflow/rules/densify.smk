@@ -8,7 +8,7 @@ rule densify:
         poses="results/{sequence}/02_poses/poses.json",
         points="results/{sequence}/02_poses/points.zarr.zip",
         support="results/{sequence}/07_fusion/support.json",
-        stereo=if_matched_here("results/{sequence}/05_stereo/{keyframe}.zarr.zip"),
+        stereo=if_matched_here("results/{sequence}/05_stereo"),
     output:
         cloud="results/{sequence}/08_densify/points.zarr.zip",
     log:

@@ -5,7 +5,7 @@ rule evaluate_reconstruction:
     input:
         poses="results/{sequence}/02_poses/poses.json",
         keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
+        depth="results/{sequence}/06_depth",
         frames="results/{sequence}/01_frames/frames.zarr.zip",
         cameras_truth=given("truth_cameras"),
         mesh_truth=given("truth_mesh"),

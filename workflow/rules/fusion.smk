@@ -4,7 +4,7 @@
 rule consistency:
     input:
         keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
+        depth="results/{sequence}/06_depth",
     output:
         consistency="results/{sequence}/07_fusion/consistency.zarr.zip",
     log:
@@ -30,7 +30,7 @@ rule fuse_scene:
     input:
         keyframes="results/{sequence}/03_keyframes/keyframes.json",
         points="results/{sequence}/02_poses/points.zarr.zip",
-        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
+        depth="results/{sequence}/06_depth",
         consistency="results/{sequence}/07_fusion/consistency.zarr.zip",
     output:
         scene="results/{sequence}/07_fusion/scene.zarr.zip",
@@ -58,7 +58,7 @@ rule locate:
         scene="results/{sequence}/07_fusion/scene.zarr.zip",
         keyframes="results/{sequence}/03_keyframes/keyframes.json",
         points="results/{sequence}/02_poses/points.zarr.zip",
-        semidense=per_keyframe("results/{sequence}/04_semidense/{keyframe}.zarr.zip"),
+        semidense="results/{sequence}/04_semidense",
     output:
         support="results/{sequence}/07_fusion/support.json",
     log:
@@ -83,7 +83,7 @@ rule locate:
 rule fuse_object:
     input:
         keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
+        depth="results/{sequence}/06_depth",
         consistency="results/{sequence}/07_fusion/consistency.zarr.zip",
         support="results/{sequence}/07_fusion/support.json",
     output:
@@ -110,7 +110,7 @@ rule fuse_object:
 rule fuse_baseline:
     input:
         keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
+        depth="results/{sequence}/06_depth",
         support="results/{sequence}/07_fusion/support.json",
     output:
         volume="results/{sequence}/07_fusion/baseline/{fusion}.zarr.zip",

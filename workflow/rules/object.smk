@@ -8,7 +8,7 @@ rule object:
         keyframes="results/{sequence}/03_keyframes/keyframes.json",
         poses="results/{sequence}/02_poses/poses.json",
         frames="results/{sequence}/01_frames/frames.zarr.zip",
-        semidense=per_keyframe("results/{sequence}/04_semidense/{keyframe}.zarr.zip"),
+        semidense="results/{sequence}/04_semidense",
     output:
         mesh="results/{sequence}/11_object/{method}/mesh.ply",
         volume="results/{sequence}/11_object/{method}/volume.zarr.zip",
