@@ -32,6 +32,7 @@ VARIANTS = config["variants"] or {}
 wildcard_constraints:
     sequence="[^/]+",
     method="[^/]+",
+    scope="(03_scene/)?",  # the scene pass, on small whole frames; empty for the pass on crops of the object
     variant="(@[^/]+)?",  # of the joint segmentation; empty for the configuration itself
 
 

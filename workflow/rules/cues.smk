@@ -4,8 +4,8 @@ CUES = ["semidense", "edges", "superpixels"]
 
 rule cues:
     input:
-        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        crops="results/{sequence}/04_crops/crops.zarr.zip",
+        keyframes="results/{sequence}/04_crops/keyframes.json",
         poses="results/{sequence}/02_poses/poses.json",
         points="results/{sequence}/02_poses/points.zarr.zip",
     output:

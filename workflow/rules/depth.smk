@@ -3,17 +3,17 @@
 
 rule depth:
     input:
-        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        semidense="results/{sequence}/04_semidense",
-        edges="results/{sequence}/05_edges",
-        stereo=if_wide("results/{sequence}/05_stereo_checked"),
+        crops="results/{sequence}/{scope}04_crops/crops.zarr.zip",
+        keyframes="results/{sequence}/{scope}04_crops/keyframes.json",
+        semidense="results/{sequence}/{scope}04_semidense",
+        edges="results/{sequence}/{scope}05_edges",
+        stereo=if_wide("results/{sequence}/{scope}05_stereo_checked"),
     output:
-        depth=directory("results/{sequence}/06_depth"),
+        depth=directory("results/{sequence}/{scope}06_depth"),
     log:
-        "results/{sequence}/logs/depth.log",
+        "results/{sequence}/{scope}logs/depth.log",
     benchmark:
-        "results/{sequence}/benchmarks/depth.tsv"
+        "results/{sequence}/{scope}benchmarks/depth.tsv"
     conda:
         "../../envs/threedfs.yaml"
     threads: KEYFRAMES_AT_ONCE

@@ -4,8 +4,9 @@ TRIALS = ["edges", "depth_trial"]
 
 rule depth_trial:
     input:
-        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        frames="results/{sequence}/01_frames/frames.zarr.zip",
+        crops="results/{sequence}/04_crops/crops.zarr.zip",
+        keyframes="results/{sequence}/04_crops/keyframes.json",
         poses="results/{sequence}/02_poses/poses.json",
         masks_truth=given("truth_masks"),
         cameras_truth=given("truth_cameras"),

@@ -86,9 +86,9 @@ def if_wide(pattern):
     return lambda wildcards: pattern if is_wide(wildcards) else []
 
 
-def unless_wide(pattern):
-    """Return an input function: nothing, if keyframes are far apart, or a file."""
-    return lambda wildcards: [] if is_wide(wildcards) else pattern
+def box_of_scope(wildcards):
+    """Return where the object is, or nothing in the scene pass, which looks for it."""
+    return [] if wildcards.scope else "results/{sequence}/03_scene/support.json"
 
 
 def results_of_method(method):
@@ -128,7 +128,9 @@ def memory_of(stage, grid="fuse_object", unknowns=lambda wildcards: 0):
 
     def estimate(wildcards, input):
         side = settings_of(grid)(wildcards)["longest_side"]
-        pixels = 0.75 * settings_of("frames")(wildcards)["longest_side"] ** 2
+        crops = settings_of("crops")(wildcards)
+        whole = crops["whole"] or wildcards.sequence not in OBJECTS
+        pixels = 0.75 * crops["longest_side"] ** 2 if whole else crops["pixels"]
         return estimate_memory(
             stage, side, pixels, count_keyframes(input), unknowns(wildcards)
         )

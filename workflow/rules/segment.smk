@@ -4,9 +4,9 @@
 rule segment:
     input:
         field=field_to_segment,
-        support="results/{sequence}/07_fusion/support.json",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
+        support="results/{sequence}/03_scene/support.json",
+        keyframes="results/{sequence}/04_crops/keyframes.json",
+        crops="results/{sequence}/04_crops/crops.zarr.zip",
         superpixels="results/{sequence}/10_segment/superpixels",
         semidense="results/{sequence}/04_semidense",
         depth="results/{sequence}/06_depth",
@@ -36,9 +36,9 @@ rule segment:
 
 rule volumetric_cut:
     input:
-        support="results/{sequence}/07_fusion/support.json",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
+        support="results/{sequence}/03_scene/support.json",
+        keyframes="results/{sequence}/04_crops/keyframes.json",
+        crops="results/{sequence}/04_crops/crops.zarr.zip",
         semidense="results/{sequence}/04_semidense",
     output:
         labels="results/{sequence}/10_segment/volumetric.zarr.zip",

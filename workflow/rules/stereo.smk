@@ -1,19 +1,18 @@
-# 05: slanted patches of a keyframe that match in other views: of the whole image where depth needs them, else of the
-# pixels that see the object's box.
+# 05: slanted patches of a keyframe that match in other views: of the pixels that see the object's box, once it is known.
 
 
 rule stereo:
     input:
-        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        semidense="results/{sequence}/04_semidense",
-        support=unless_wide("results/{sequence}/07_fusion/support.json"),
+        crops="results/{sequence}/{scope}04_crops/crops.zarr.zip",
+        keyframes="results/{sequence}/{scope}04_crops/keyframes.json",
+        semidense="results/{sequence}/{scope}04_semidense",
+        support=box_of_scope,
     output:
-        stereo=directory("results/{sequence}/05_stereo"),
+        stereo=directory("results/{sequence}/{scope}05_stereo"),
     log:
-        "results/{sequence}/logs/stereo.log",
+        "results/{sequence}/{scope}logs/stereo.log",
     benchmark:
-        "results/{sequence}/benchmarks/stereo.tsv"
+        "results/{sequence}/{scope}benchmarks/stereo.tsv"
     conda:
         "../../envs/threedfs.yaml"
     threads: KEYFRAMES_AT_ONCE
@@ -32,14 +31,14 @@ rule stereo:
 
 rule stereo_check:
     input:
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        stereo="results/{sequence}/05_stereo",
+        keyframes="results/{sequence}/{scope}04_crops/keyframes.json",
+        stereo="results/{sequence}/{scope}05_stereo",
     output:
-        checked=directory("results/{sequence}/05_stereo_checked"),
+        checked=directory("results/{sequence}/{scope}05_stereo_checked"),
     log:
-        "results/{sequence}/logs/stereo_check.log",
+        "results/{sequence}/{scope}logs/stereo_check.log",
     benchmark:
-        "results/{sequence}/benchmarks/stereo_check.tsv"
+        "results/{sequence}/{scope}benchmarks/stereo_check.tsv"
     conda:
         "../../envs/threedfs.yaml"
     threads: KEYFRAMES_AT_ONCE

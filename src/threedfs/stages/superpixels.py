@@ -27,7 +27,7 @@ def run(
     store = read_crops(crops)
     name = read_keyframe(keyframes, keyframe).view.name
     found = split_image(
-        store.image(name), store.valid_of(name), read_edges(edges), count=params.count, compactness=params.compactness
+        store.image(name), store.valid_of(name), read_edges(edges), area=params.area, compactness=params.compactness
     )
     write_superpixels(superpixels, found, job.header)
     job.progress.note(f"{keyframe}: {found.count} superpixels, {len(found.pairs)} pairs")
