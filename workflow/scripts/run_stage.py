@@ -16,7 +16,9 @@ run_job(
     {name: as_paths(value) for name, value in snakemake.input.items()},
     {name: Path(value) for name, value in snakemake.output.items()},
     snakemake.params.settings,
-    {name: value for name, value in snakemake.wildcards.items() if name != "variant"},  # it is in the settings
+    {
+        name: value for name, value in snakemake.wildcards.items() if name not in ("variant", "scope")
+    },  # the settings have it, or the paths
     snakemake.params.get("labels", {}),
     store=Path(snakemake.config["store"]),
     log=Path(snakemake.log[0]),

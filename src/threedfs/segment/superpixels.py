@@ -71,7 +71,9 @@ def split_image(
     compactness : float
         Lab units of colour difference that weigh as much as the distance between two superpixels.
     """
-    index = slic(image, n_segments=max(1, round(valid.size / area)), compactness=compactness, start_label=0).astype(np.int64)
+    index = slic(image, n_segments=max(1, round(valid.size / area)), compactness=compactness, start_label=0).astype(
+        np.int64
+    )
     _, numbers = np.unique(index[valid], return_inverse=True)
     index = np.full(valid.shape, -1, np.int32)
     index[valid] = numbers
