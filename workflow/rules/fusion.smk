@@ -1,4 +1,4 @@
-# 07: check the depth maps against each other, fuse them, find the object and fuse it finely.
+# 07: check the depth maps against each other, fuse the scene, and the object finely.
 
 
 rule consistency:
@@ -49,33 +49,6 @@ rule fuse_scene:
         seed=config["seed"],
     message:
         "Fuse the scene of {wildcards.sequence}."
-    script:
-        "../scripts/run_stage.py"
-
-
-rule locate:
-    input:
-        scene="results/{sequence}/07_fusion/scene.zarr.zip",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        points="results/{sequence}/02_poses/points.zarr.zip",
-        semidense=per_keyframe("results/{sequence}/04_semidense/{keyframe}.zarr.zip"),
-    output:
-        support="results/{sequence}/07_fusion/support.json",
-    log:
-        "results/{sequence}/logs/locate.log",
-    benchmark:
-        "results/{sequence}/benchmarks/locate.tsv"
-    conda:
-        "../../envs/threedfs.yaml"
-    threads: 1
-    resources:
-        mem_mb=memory_of("locate", grid="fuse_scene"),
-    params:
-        code=code_of("locate"),
-        settings=settings_of("locate"),
-        seed=config["seed"],
-    message:
-        "Find the support plane and the object of {wildcards.sequence}."
     script:
         "../scripts/run_stage.py"
 

@@ -30,6 +30,7 @@ rule superpixels:
 rule segment:
     input:
         field=field_to_segment,
+        located=located_to_segment,
         support="results/{sequence}/07_fusion/support.json",
         keyframes="results/{sequence}/03_keyframes/keyframes.json",
         undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
