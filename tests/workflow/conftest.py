@@ -12,6 +12,7 @@ import pytest
 
 from threedfs.params.document import FILES
 from threedfs.params.schema import declared_stages
+from threedfs.store.arguments import read_arguments
 
 ROOT = Path(__file__).resolve().parents[2]
 BIN = Path(sys.executable).parent
@@ -65,6 +66,8 @@ SIGNATURES = {
 """Inputs, outputs and wildcards of each stage: the contract between rules and stages."""
 
 TEMPLATE = '''"""Stand-in for a stage."""
+
+from pathlib import Path
 
 from threedfs.stages.stub import write
 
@@ -177,11 +180,13 @@ def write_stub_stages(package: Path, with_params: set[str]) -> None:
         if stage == "collect":
             continue
         inputs, outputs, wildcards = (text.split() for text in names)
+        real = read_arguments(f"threedfs.stages.{stage}")  # which of them are lists of files
         params = ["params"] if stage in with_params else []
         text = TEMPLATE.format(
             stage=stage,
             imports=f"import threedfs.params.{stage}\n\n" if params else "",
-            arguments="*, " + ", ".join([*inputs, *outputs, *wildcards, *params, "job"]),
+            arguments="*, "
+            + ", ".join(_annotate(name, real) for name in [*inputs, *outputs, *wildcards, *params, "job"]),
             inputs=_mapping(inputs),
             outputs=_mapping(outputs),
             names=_mapping(wildcards),
@@ -189,6 +194,10 @@ def write_stub_stages(package: Path, with_params: set[str]) -> None:
         )
         (package / "stages" / f"{stage}.py").write_text(text)
     shutil.copy(Path(__file__).with_name("stub.py"), package / "stages" / "stub.py")
+
+
+def _annotate(name: str, real: dict[str, str]) -> str:
+    return f"{name}: {real[name]}" if "Path" in real.get(name, "") else name
 
 
 def _mapping(names: list[str]) -> str:

@@ -17,25 +17,26 @@ import pytest
 from threedfs.store.files import remove_abandoned
 
 RULES = (
-    "render calibrate frames features poses undistort keyframes semidense edges depth consistency fuse_scene locate "
+    "render calibrate frames features poses undistort keyframes cues depth consistency fuse_scene locate "
     "fuse_object locate_object object evaluate_reconstruction evaluate collect all"
 ).split()
 FILMED = ("video.mp4", "cameras.json", "mesh.ply")
 
 
 def jobs_done(output: str) -> Counter:
-    """Count the jobs that computed, by stage."""
+    """Count the jobs, and of those on keyframes the keyframes, that computed, by rule."""
     return Counter(re.findall(r"^(\w+) of .*: done in", output, re.MULTILINE))
 
 
 def records(results, sequence):
     """Read the action records that a sequence's logs name."""
-    keys = (log.read_text().split()[-1] for log in (results / sequence / "logs").rglob("*.log"))
+    logs = (log.read_text() for log in (results / sequence / "logs").rglob("*.log"))
+    keys = (key for log in logs for key in re.findall(r"^action (\w+)$", log, re.MULTILINE))
     return [json.loads((results / ".store/actions" / key[:2] / f"{key}.json").read_text()) for key in keys]
 
 
 def jobs_taken(output: str) -> Counter:
-    """Count the jobs that the store answered, by stage."""
+    """Count those that the store answered."""
     return Counter(re.findall(r"^(\w+) of .*: taken from the store in", output, re.MULTILINE))
 
 
@@ -46,8 +47,8 @@ def test_lists_every_rule(project):
 
 def test_first_run_does_every_job_and_prints_the_summary(first_run):
     project, output = first_run
-    once = set(RULES) - {"render", "calibrate", "all", "semidense", "edges", "depth"}
-    assert jobs_done(output) == Counter({**dict.fromkeys(once, 1), "semidense": 2, "edges": 2, "depth": 2})
+    once = set(RULES) - {"render", "calibrate", "all", "cues", "depth"}
+    assert jobs_done(output) == Counter({**dict.fromkeys(once, 1), "cues": 2, "depth": 2})
     assert re.search(r"sample fused_sdf +0.500", output)
     assert (project.folder / "results/metrics.csv").is_file()
 
@@ -76,6 +77,13 @@ def test_changed_parameter_reruns_what_follows_and_flipped_back_nothing(finished
     output = finished.run()
     assert jobs_done(output) == Counter()
     assert jobs_taken(output)["depth"] == 2
+
+
+def test_changed_parameter_of_one_stage_of_a_rule_leaves_the_others(finished):
+    (finished.folder / "other.yaml").write_text("superpixels: {count: 77}\n")
+    output = finished.run("--configfile", "other.yaml")
+    at_work = Counter(re.findall(r"^(\w+) of .*: at work", output, re.MULTILINE))
+    assert at_work == Counter(superpixels=2) and set(jobs_done(output)) == {"cues"}
 
 
 def test_edited_source_reruns_its_stage_and_what_follows(finished):
@@ -221,7 +229,7 @@ def test_methods_of_the_segmentation_share_their_cuts(finished):
     cuts = {"gc_2d": "images", "gc_2d3d_pixel": "joint", "gc_2d3d_voxel": "joint", "sdf_2d3d_voxel": "joint"}
     (finished.folder / "cuts.yaml").write_text(f"methods: [{', '.join(cuts)}, gc_select, volumetric_gc]\n")
     output = finished.run("--configfile", "cuts.yaml")
-    expected = {"superpixels": 2, "segment": 2, "volumetric_cut": 1, "cut_object": 4, "pixel_masks": 2, "evaluate": 6}
+    expected = {"segment": 2, "volumetric_cut": 1, "cut_object": 4, "pixel_masks": 2, "evaluate": 6}
     assert jobs_done(output) == Counter({**expected, "collect": 1})
     results = finished.folder / "results/sample"
     for method, cut in cuts.items():
@@ -246,7 +254,7 @@ def test_variants_cut_again_with_their_settings_and_get_a_table(finished):
         "variants: {no_table: {segment: {table: false}}, coarse: {cut_object: {dilation: 5}}}\n"
     )
     output = finished.run("--configfile", "variants.yaml")
-    expected = {"superpixels": 2, "segment": 2, "cut_object": 3, "pixel_masks": 3, "evaluate": 6, "collect": 1}
+    expected = {"segment": 2, "cut_object": 3, "pixel_masks": 3, "evaluate": 6, "collect": 1}
     # masks of pixels do not depend on how a mesh is cut: those of the second variant are those of none
     assert jobs_done(output) + jobs_taken(output) == Counter(expected)
     results = finished.folder / "results/sample"
@@ -305,13 +313,12 @@ def test_depth_experiment_tries_keyframes_that_have_a_true_depth_and_joins_the_t
         "poses",
         "undistort",
         "keyframes",
-        "edges",
         "depth_trial",
         "depth_experiment",
         "collect",
     )
     assert jobs_done(output) == Counter(once)
-    trial = json.loads((project.folder / "results/mug/12_depth_experiment/000002.zarr.zip").read_text())
+    trial = json.loads((project.folder / "results/mug/12_depth_experiment/trials/000002.zarr.zip").read_text())
     assert trial["names"]["depth_scale"] == 5000 and trial["names"]["depth_settings"]["prior"] == "rotation_invariant"
     assert "own,mug,depth/all" in (project.folder / "results/metrics.csv").read_text()
     assert "Nothing to be done" in project.run("--configfile", "own.yaml")

@@ -4,7 +4,7 @@
 rule deform:
     input:
         field="results/{sequence}/07_fusion/object.zarr.zip",
-        support="results/{sequence}/07_fusion/support.json",
+        support="results/{sequence}/03_scene/support.json",
         cloud="results/{sequence}/08_densify/points.zarr.zip",
     output:
         volume="results/{sequence}/09_deform/volume.zarr.zip",

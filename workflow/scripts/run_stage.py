@@ -1,4 +1,4 @@
-"""Hand a rule's names to the stage of the same name; the only adapter."""
+"""Hand a rule's names to the stage of the same name; the only adapter of rules that work on a sequence."""
 # ruff: noqa: F821 (Snakemake defines `snakemake` in a script)
 
 from pathlib import Path

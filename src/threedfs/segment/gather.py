@@ -50,10 +50,9 @@ class Scene:
     box : Box
         The object's, standing on the plane.
     views : mapping of str to View
-        By the name of the keyframe, like images (H, W, 3) uint8 RGB, superpixels, depth (H, W), its confidence (H, W)
-        and semi-dense depth (H, W), NaN where there is none; the last only if superpixels are linked by it.
-    valid : (H, W) bool
-        Pixels that show the scene.
+        By the name of the keyframe, like images (H, W, 3) uint8 RGB, which of their pixels show the scene (H, W) bool,
+        superpixels, depth (H, W), its confidence (H, W) and semi-dense depth (H, W), NaN where there is none; the last
+        only if superpixels are linked by it.
     """
 
     located: Located
@@ -61,7 +60,7 @@ class Scene:
     box: Box
     views: Mapping[str, View]
     images: Mapping[str, np.ndarray]
-    valid: np.ndarray
+    valid: Mapping[str, np.ndarray]
     superpixels: Mapping[str, Superpixels]
     depth: Mapping[str, np.ndarray]
     confidence: Mapping[str, np.ndarray]

@@ -29,7 +29,7 @@ def fit_masks(
     allowed: np.ndarray,
     masks: Mapping[str, np.ndarray],
     views: Mapping[str, View],
-    valid: np.ndarray,
+    valid: Mapping[str, np.ndarray],
     grid: VoxelGrid,
     *,
     ramp: float,
@@ -53,7 +53,7 @@ def fit_masks(
         Voxels that may be filled.
     masks : mapping of str to (H, W) bool
     views : mapping of str to View
-    valid : (H, W) bool
+    valid : mapping of str to (H, W) bool
         Pixels that show the scene; where they end is no outline of the object.
     grid : VoxelGrid
     ramp : float
@@ -76,7 +76,7 @@ def fit_masks(
         row, column = nearest_pixels(view, centres)
         # world length of a pixel, per depth, in ramps of the hull's field
         share = 1 / (view.camera.fx * grid.spacing * ramp)
-        outside = -depth_inside(mask | ~valid)
+        outside = -depth_inside(mask | ~valid[name])
         _measure(centres, view.cam_from_world[2], row, column, outside, share, distances[rank])
         gap = mask & ~covered[name]
         footprint = max(1, int(np.ceil(view.camera.fx * grid.spacing / (view.cam_from_world[2] @ middle))))

@@ -54,7 +54,7 @@ class Superpixels:
 
 
 def split_image(
-    image: np.ndarray, valid: np.ndarray, strength: np.ndarray, *, count: int, compactness: float
+    image: np.ndarray, valid: np.ndarray, strength: np.ndarray, *, area: float, compactness: float
 ) -> Superpixels:
     """Split an image into superpixels by SLIC.
 
@@ -66,12 +66,14 @@ def split_image(
         Pixels that show the scene; others belong to no superpixel.
     strength : (H, W) float32
         Contour strength in [0, 1].
-    count : int
-        About how many there will be.
+    area : float
+        Of a superpixel on average, about, pixels.
     compactness : float
         Lab units of colour difference that weigh as much as the distance between two superpixels.
     """
-    index = slic(image, n_segments=count, compactness=compactness, start_label=0).astype(np.int64)
+    index = slic(image, n_segments=max(1, round(valid.size / area)), compactness=compactness, start_label=0).astype(
+        np.int64
+    )
     _, numbers = np.unique(index[valid], return_inverse=True)
     index = np.full(valid.shape, -1, np.int32)
     index[valid] = numbers

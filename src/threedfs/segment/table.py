@@ -88,7 +88,7 @@ def picture_table(
     images: Mapping[str, np.ndarray],
     views: Mapping[str, View],
     covered: Mapping[str, np.ndarray],
-    valid: np.ndarray,
+    valid: Mapping[str, np.ndarray],
     plane: Plane,
     solid: np.ndarray,
     box: Box,
@@ -104,7 +104,8 @@ def picture_table(
     views : mapping of str to View
     covered : mapping of str to (H, W) bool
         Pixels that may show the object.
-    valid : (H, W) bool
+    valid : mapping of str to (H, W) bool
+        Pixels that show the scene.
     plane : Plane
     solid : (N, 3) float64
         World points inside the object.
@@ -115,7 +116,7 @@ def picture_table(
     colors, shown = [], []
     for name, view in views.items():
         picture_from_image = np.linalg.inv(view.px_from_world @ world_from_picture)
-        clear = (valid & ~covered[name]).astype(np.float32)
+        clear = (valid[name] & ~covered[name]).astype(np.float32)
         colors.append(cv2.warpPerspective(lab_image(images[name]), picture_from_image, size, flags=cv2.INTER_LINEAR))
         shown.append(cv2.warpPerspective(clear, picture_from_image, size, flags=cv2.INTER_LINEAR) > 0.99)
         shown[-1] &= _in_front(view, world_from_picture, size)

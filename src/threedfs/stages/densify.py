@@ -11,8 +11,8 @@ from threedfs.colmap.workspace import FusionRule, fuse_workspace, match_on_gpu, 
 from threedfs.densify.engine import choose_engine
 from threedfs.densify.normals import patch_normals
 from threedfs.densify.tracks import list_tracks
+from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_stereo
-from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.oriented_points import write_oriented_points
 from threedfs.io.points import read_points
@@ -25,7 +25,7 @@ from threedfs.types import OrientedPoints
 
 def run(
     *,
-    undistorted: Path,
+    crops: Path,
     keyframes: Path,
     poses: Path,
     points: Path,
@@ -45,7 +45,7 @@ def run(
     if engine == "off":
         found = _nothing()
     else:
-        frames = read_frames(undistorted)
+        frames = read_crops(crops)
         numbers = {view.name: number for number, view in enumerate(read_poses(poses).views)}
         tracks = list_tracks(read_points(points), [numbers[view.name] for view in views])
         with TemporaryDirectory(prefix="threedfs-") as folder:

@@ -6,8 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
+from threedfs.crops.resample import find_valid
 from threedfs.errors import UserError
 from threedfs.frames.masks import find_masks
+from threedfs.geometry.lens import Lens
 from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import write_keyframes
 from threedfs.io.points import read_points
@@ -24,7 +26,7 @@ from threedfs.types import Keyframe
 
 def run(
     *,
-    undistorted: Path,
+    frames: Path,
     poses: Path,
     points: Path,
     masks: Path | None,
@@ -43,9 +45,11 @@ def run(
         If no frame can be a keyframe, or one with a mask cannot, for want of points in view or of neighbours; or if
         no mask belongs to a posed frame.
     """
-    store = read_frames(undistorted)
-    views = read_poses(poses).views
-    visibility = find_visibility(views, read_points(points), store.valid)
+    store, posed = read_frames(frames), read_poses(poses)
+    views = posed.views
+    lenses = dict.fromkeys(Lens(view.camera, *posed.distortion) for view in views)
+    valid = np.logical_and.reduce([find_valid(lens, lens.camera) for lens in lenses])
+    visibility = find_visibility(views, read_points(points), valid)
     names = [view.name for view in views]
     masked = {} if masks is None else find_masks(masks, names, numbered=store.ordered)
     annotated = np.array([name in masked for name in names])

@@ -40,5 +40,6 @@ def run(
     job.progress.note(f"{len(points.xyz)} points, {len(surface.faces)} triangles")
     write_mesh(mesh, surface)
     views = [entry.view for entry in read_keyframes(keyframes).values()]
-    distortion, source_shape = read_poses(poses).distortion, read_frames(frames).source_shape
-    write_outlines(silhouettes, masks, surface, views, distortion, source_shape, job.header)
+    posed, source_shape = read_poses(poses), read_frames(frames).source_shape
+    whole = {view.name: view for view in posed.views}
+    write_outlines(silhouettes, masks, surface, views, whole, posed.distortion, source_shape, job.header)

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from threedfs.io.consistency import read_consistency
+from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_depth_map
-from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.located import read_located
 from threedfs.io.point_clouds import read_semidense_maps
@@ -30,7 +30,7 @@ def run(
     located: Path,
     support: Path,
     keyframes: Path,
-    undistorted: Path,
+    crops: Path,
     superpixels: list[Path],
     semidense: list[Path],
     depth: list[Path],
@@ -41,7 +41,7 @@ def run(
     job: Job,
 ) -> None:
     """Read a field, the object in it and what the keyframes show; write labels, `joint` or of the `images` alone."""
-    place, entries, store = read_located(located), read_keyframes(keyframes), read_frames(undistorted)
+    place, entries, store = read_located(located), read_keyframes(keyframes), read_crops(crops)
     views = {name: entry.view for name, entry in entries.items()}
     trust = read_consistency(consistency)
     scene = Scene(
@@ -50,7 +50,7 @@ def run(
         read_support(support).box,
         views=views,
         images={name: store.image(name) for name in views},
-        valid=store.valid,
+        valid={name: store.valid_of(name) for name in views},
         superpixels={path.name.removesuffix(".zarr.zip"): read_superpixels(path) for path in superpixels},
         depth={path.name.removesuffix(".zarr.zip"): read_depth_map(path).depth for path in depth},
         confidence={name: trust.read(name).confidence for name in views},

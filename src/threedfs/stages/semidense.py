@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
+from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import Semidense, write_semidense
-from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import read_keyframe
 from threedfs.io.points import read_points
 from threedfs.io.poses import read_poses
@@ -19,7 +19,7 @@ from threedfs.semidense.observe import SearchRule
 
 def run(
     *,
-    undistorted: Path,
+    crops: Path,
     keyframes: Path,
     poses: Path,
     points: Path,
@@ -29,15 +29,15 @@ def run(
     job: Job,
 ) -> None:
     """Read one keyframe, its images and sparse points; write its semi-dense map."""
-    store = read_frames(undistorted)
+    store = read_crops(crops)
     chosen = read_keyframe(keyframes, keyframe)
     sparse = read_points(points)
     frame = [view.name for view in read_poses(poses).views].index(keyframe)
     inverse_depth, variance = estimate_semidense(
         keyframe=chosen,
         image=store.image(keyframe),
-        valid=store.valid,
-        neighbours=((view, store.image(view.name)) for view in order_by_baseline(chosen)),
+        valid=store.valid_of(keyframe),
+        neighbours=((view, store.image(view.name), store.valid_of(view.name)) for view in order_by_baseline(chosen)),
         sparse_points=sparse.xyz[sparse.seen_by(frame)],
         search=SearchRule(
             min_gradient_cosine2=params.min_gradient_cosine2,

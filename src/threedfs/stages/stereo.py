@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 
 from threedfs.depth.zncc import prepare_grey
+from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import StereoMap, read_semidense, write_stereo
-from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import read_keyframe
 from threedfs.io.volumes import read_support
 from threedfs.job import Job
@@ -19,7 +19,7 @@ from threedfs.stereo.region import mask_box
 
 def run(
     *,
-    undistorted: Path,
+    crops: Path,
     keyframes: Path,
     semidense: Path,
     support: Path | None,
@@ -33,7 +33,7 @@ def run(
     If the place of the object is given, patches are sought at the pixels that see its box, at any depth: in front of it
     and behind it too.
     """
-    frames = read_frames(undistorted)
+    frames = read_crops(crops)
     entry = read_keyframe(keyframes, keyframe)
     neighbours = entry.neighbours[: params.views]
     wanted = np.ones(entry.view.camera.shape, bool)
@@ -41,9 +41,9 @@ def run(
         wanted = mask_box(entry.view, read_support(support).box)
     found = match_patches(
         entry.view,
-        prepare_grey(frames.image(keyframe), frames.valid),
+        prepare_grey(frames.image(keyframe), frames.valid_of(keyframe)),
         neighbours,
-        [prepare_grey(frames.image(view.name), frames.valid) for view in neighbours],
+        [prepare_grey(frames.image(view.name), frames.valid_of(view.name)) for view in neighbours],
         read_semidense(semidense).inverse_depth.astype(np.float64),
         wanted,
         near=entry.near,

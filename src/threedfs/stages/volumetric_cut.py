@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from threedfs.geometry.grid import cover_box, voxel_index
-from threedfs.io.frames import read_frames
+from threedfs.io.crops import read_crops
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.point_clouds import read_semidense_points
 from threedfs.io.segmentation import Segmentation, write_segmentation
@@ -23,14 +23,14 @@ def run(
     *,
     support: Path,
     keyframes: Path,
-    undistorted: Path,
+    crops: Path,
     semidense: list[Path],
     labels: Path,
     params: VolumetricCutParams,
     job: Job,
 ) -> None:
     """Read images, the object's box and semi-dense points; write voxel labels."""
-    place, entries, store = read_support(support), read_keyframes(keyframes), read_frames(undistorted)
+    place, entries, store = read_support(support), read_keyframes(keyframes), read_crops(crops)
     views = {name: entry.view for name, entry in entries.items()}
     grid = cover_box(place.box, params.longest_side)
     votes = np.zeros(grid.shape, np.float32)

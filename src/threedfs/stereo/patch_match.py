@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from threedfs.depth.zncc import MISSING
 from threedfs.frames.scale import scale_camera
 from threedfs.geometry.rigid import invert
 from threedfs.stereo.sweep import improve_planes, refine_depth
@@ -71,8 +72,8 @@ def match_patches(
     reference : View
     grey : (H, W) float32
         Centred grey levels, `MISSING` where the image shows nothing.
-    neighbours, images : sequences of View and of (H, W) float32
-        What the patch is sought in, in the same form.
+    neighbours, images : sequences of View and of (H2, W2) float32
+        What the patch is sought in, in the same form, each of its own size.
     measured : (H, W) float64
         Inverse depth to start from, NaN where there is none.
     wanted : (H, W) bool
@@ -108,8 +109,10 @@ def match_patches(
         shape = tuple(-(-side // 2**level) for side in grey.shape)
         view = _resize_view(reference, shape)
         small = _shrink(grey, shape)
-        stack = np.stack([_shrink(image, shape) for image in images])
-        views = (stack, *neighbour_maps(view, [_resize_view(each, shape) for each in neighbours]))
+        shapes = [tuple(-(-side // 2**level) for side in image.shape) for image in images]
+        stack = _stack([_shrink(image, own) for image, own in zip(images, shapes, strict=True)])
+        others = [_resize_view(each, own) for each, own in zip(neighbours, shapes, strict=True)]
+        views = (stack, *neighbour_maps(view, others))
         if planes is None:
             planes = guess_planes(_sample(measured, shape), near, far, np.random.default_rng(seed))
         else:
@@ -176,6 +179,15 @@ def _shrink(grey: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
     if grey.shape == shape:
         return grey
     return cv2.resize(grey, shape[::-1], interpolation=cv2.INTER_AREA)
+
+
+def _stack(images: Sequence[np.ndarray]) -> np.ndarray:
+    """Return images of different sizes as one array, `MISSING` beyond each."""
+    rows, columns = np.max([image.shape for image in images], axis=0)
+    stack = np.full((len(images), rows, columns), MISSING, np.float32)
+    for layer, image in zip(stack, images, strict=True):
+        layer[: image.shape[0], : image.shape[1]] = image
+    return stack
 
 
 def _nearest(shape: tuple[int, int], source: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
