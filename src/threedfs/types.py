@@ -6,6 +6,7 @@ Conventions (docs/conventions.md): right-handed; camera x right, y down, z forwa
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -247,6 +248,25 @@ class Plane:
     def distance(self, points: np.ndarray) -> np.ndarray:
         """Signed distance of points (..., 3), scene units."""
         return points @ self.normal + self.offset
+
+
+@dataclass(frozen=True)
+class Support:
+    """Where the object stands.
+
+    Attributes
+    ----------
+    plane : Plane
+        The support surface; its positive side holds the object and the cameras.
+    box : Box
+        Around the object, standing on the plane: its third axis is the plane's normal.
+    figures : mapping of str to float
+        What the search for them found (inlier share, ...).
+    """
+
+    plane: Plane
+    box: Box
+    figures: Mapping[str, float]
 
 
 @dataclass(frozen=True)

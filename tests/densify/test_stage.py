@@ -18,12 +18,12 @@ from threedfs.io.keyframes import write_keyframes
 from threedfs.io.points import write_points
 from threedfs.io.poses import Poses, write_poses
 from threedfs.io.schema import Schema
-from threedfs.io.volumes import Support, write_support
+from threedfs.io.volumes import write_support
 from threedfs.job import Job
 from threedfs.params.densify import DensifyParams
 from threedfs.progress import Progress
 from threedfs.stages import densify
-from threedfs.types import Box, Keyframe, Plane, SparsePoints, View
+from threedfs.types import Box, Keyframe, Plane, SparsePoints, Support, View
 
 JOB = Job(Progress("test"), {"provenance": "test"})
 VIEWS = scenes.views()

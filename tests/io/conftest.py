@@ -19,6 +19,7 @@ from threedfs.io import (
     features,
     frames,
     keyframes,
+    located,
     metrics,
     points,
     poses,
@@ -26,8 +27,9 @@ from threedfs.io import (
     superpixels,
     volumes,
 )
+from threedfs.locate.find import Located
 from threedfs.segment.superpixels import Superpixels
-from threedfs.types import Box, Camera, Features, Keyframe, Plane, SparsePoints, View, VoxelGrid
+from threedfs.types import Box, Camera, Features, Keyframe, Plane, SparsePoints, Support, View, VoxelGrid
 
 HEADER = {"parameters": {"size": 3, "names": ["a", "b"]}, "provenance": "0123"}
 RANDOM = np.random.default_rng(5)
@@ -144,9 +146,22 @@ ARTIFACTS = [
     ),
     Artifact(
         "support.json",
-        volumes.Support(Plane(np.array([0.0, -1, 0]), 0.25), Box(ASLANT, np.zeros(3), np.ones(3)), {"inliers": 0.5}),
+        Support(Plane(np.array([0.0, -1, 0]), 0.25), Box(ASLANT, np.zeros(3), np.ones(3)), {"inliers": 0.5}),
         volumes.write_support,
         volumes.read_support,
+    ),
+    Artifact(
+        "located.zarr.zip",
+        Located(
+            VoxelGrid(np.array([0.5, -1.0, 2.0]), 0.25, (3, 4, 5), ASLANT),
+            Plane(np.array([0.0, -1, 0]), 0.25),
+            RANDOM.random((3, 4, 5)) > 0.5,
+            0.375,
+            12,
+            2,
+        ),
+        located.write_located,
+        located.read_located,
     ),
     Artifact(
         "silhouettes.zarr.zip",

@@ -142,7 +142,7 @@ def test_field_fitted_to_masks():
     height = height_above(TABLE, GRID)
 
     def fit(grid, views):
-        valid = np.ones(CAMERA.shape, bool)
+        valid = dict.fromkeys(views, np.ones(CAMERA.shape, bool))
         return fit_masks(SDF, SDF < 0, height > 0, masks, views, valid, grid, ramp=5, tolerance=0.1, least_views=2)[0]
 
     before, after = fit(GRID, views), fit(TURNED, {name: turn_view(view) for name, view in views.items()})
@@ -183,7 +183,9 @@ def test_picture_of_the_table_and_pixels_of_the_box():
 
     def picture(views, plane, solid, box):
         named = {view.name: view for view in views}
-        return picture_table(images, named, dict.fromkeys(images, clear), ~clear, plane, solid, box)
+        return picture_table(
+            images, named, dict.fromkeys(images, clear), dict.fromkeys(images, ~clear), plane, solid, box
+        )
 
     wide, turned = BOX.grow(0.2), [turn_view(view) for view in VIEWS]
     before = picture(VIEWS, TABLE, solid, wide)

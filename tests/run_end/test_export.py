@@ -8,9 +8,9 @@ import trimesh
 
 from threedfs.errors import UserError
 from threedfs.io.meshes import read_mesh, write_mesh
-from threedfs.io.volumes import Support, write_support
+from threedfs.io.volumes import write_support
 from threedfs.run_end.export import export
-from threedfs.types import Box, Mesh, Plane
+from threedfs.types import Box, Mesh, Plane, Support
 
 
 @pytest.fixture

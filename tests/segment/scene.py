@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from threedfs.geometry.grid import cover_box, voxel_centres
-from threedfs.geometry.projection import backproject, pixel_grid
+from threedfs.geometry.projection import backproject, backproject_map, pixel_grid
+from threedfs.locate.find import find_object
 from threedfs.segment.gather import Scene
 from threedfs.segment.superpixels import split_image
-from threedfs.types import Box, Camera, Plane, View
+from threedfs.types import Box, Camera, Plane, Support, View
 
 CAMERA = Camera(120, 90, 130.0, 130.0, 59.5, 44.5)
 RADIUS, CLIP = 0.2, 0.08
@@ -58,12 +59,18 @@ def make_scene(views: int = 8, shrink: float = 0.0, size: int = 40) -> tuple[Sce
     valid = np.ones(CAMERA.shape, bool)
     blank = np.zeros(CAMERA.shape, np.float32)
     scene = Scene(
-        grid,
+        find_object(
+            grid,
+            sdf,
+            np.full(grid.shape, views, np.uint8),
+            Support(PLANE, box, {}),
+            looks,
+            [backproject_map(view, shots[view.name][1]).reshape(-1, 3) for view in looks],
+            least_height=grid.spacing,
+            reach=0.2,
+        ),
         sdf,
-        np.full(grid.shape, views, np.uint8),
-        PLANE,
         box,
-        clearance=grid.spacing,
         views={view.name: view for view in looks},
         images={name: image for name, (image, _, _) in shots.items()},
         valid=valid,

@@ -8,14 +8,14 @@ from threedfs.errors import UserError
 from threedfs.io.depth_maps import Semidense, read_stereo, write_semidense, write_stereo
 from threedfs.io.frames import Frame, write_frames
 from threedfs.io.keyframes import write_keyframes
-from threedfs.io.volumes import Support, write_support
+from threedfs.io.volumes import write_support
 from threedfs.job import Job
 from threedfs.params.stereo import StereoParams
 from threedfs.params.stereo_check import StereoCheckParams
 from threedfs.progress import Progress
 from threedfs.stages import stereo, stereo_check
 from threedfs.stereo.region import mask_box
-from threedfs.types import Box, Keyframe, Plane
+from threedfs.types import Box, Keyframe, Plane, Support
 
 JOB = Job(Progress("test"), {"provenance": "test"})
 

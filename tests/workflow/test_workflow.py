@@ -18,7 +18,7 @@ from threedfs.store.files import remove_abandoned
 
 RULES = (
     "render calibrate frames features poses undistort keyframes cues depth consistency fuse_scene locate "
-    "fuse_object object evaluate_reconstruction evaluate collect all"
+    "fuse_object locate_object object evaluate_reconstruction evaluate collect all"
 ).split()
 FILMED = ("video.mp4", "cameras.json", "mesh.ply")
 
@@ -72,7 +72,7 @@ def test_changed_parameter_reruns_what_follows_and_flipped_back_nothing(finished
     (finished.folder / "other.yaml").write_text("depth: {iterations: 7}\n")
     done = jobs_done(finished.run("--configfile", "other.yaml"))
     assert done["depth"] == 2
-    fused = {"consistency", "fuse_scene", "locate", "fuse_object", "object"}
+    fused = {"consistency", "fuse_scene", "locate", "fuse_object", "locate_object", "object"}
     assert set(done) == {"depth", *fused, "evaluate_reconstruction", "evaluate"}
     output = finished.run()
     assert jobs_done(output) == Counter()
@@ -186,15 +186,18 @@ def test_methods_share_what_they_have_in_common(finished):
     methods = ("fused_sdf", "deformed_sdf", "tsdf", "soft_maximum", "hard_maximum")
     (finished.folder / "all.yaml").write_text(f"methods: [{', '.join(methods)}, poisson]\n")
     output = finished.run("--configfile", "all.yaml")
-    expected = {"stereo": 2, "densify": 1, "deform": 1, "fuse_baseline": 3, "object": 4, "poisson": 1, "evaluate": 5}
+    expected = {"stereo": 2, "densify": 1, "deform": 1, "fuse_baseline": 3, "poisson": 1, "evaluate": 5}
+    expected |= {"locate_object": 4, "object": 4}
     assert jobs_done(output) == Counter({**expected, "collect": 1})
-    fields = {
-        method: json.loads((finished.folder / f"results/sample/11_object/{method}/mesh.ply").read_text())["inputs"][
-            "field"
-        ]
-        for method in methods
-    }
-    assert len(set(fields.values())) == 5
+    results = finished.folder / "results/sample"
+    fields = set()
+    for method in methods:
+        made = json.loads((results / f"11_object/{method}/mesh.ply").read_text())["inputs"]
+        found = results / f"07_fusion/located/{method}.zarr.zip"
+        assert made["located"] == hashlib.sha256(found.read_bytes()).hexdigest()
+        assert made["field"] == json.loads(found.read_text())["inputs"]["volume"]
+        fields.add(made["field"])
+    assert len(fields) == 5
     patches = json.loads((finished.folder / "results/sample/05_stereo/000001.zarr.zip").read_text())
     assert patches["inputs"]["support"] is not None and patches["names"] == {"keyframe": "000001"}
     assert "Nothing to be done" in finished.run("--configfile", "all.yaml")
@@ -237,7 +240,11 @@ def test_methods_of_the_segmentation_share_their_cuts(finished):
     with_field = json.loads((results / "11_object/sdf_2d3d_voxel/mesh.ply").read_text())
     assert with_field["inputs"]["field"] is not None
     (finished.folder / "deformed.yaml").write_text("methods: [gc_2d3d_pixel]\nsegment: {field: deformed}\n")
-    assert jobs_done(finished.run("--configfile", "deformed.yaml"))["deform"] == 1
+    done = jobs_done(finished.run("--configfile", "deformed.yaml"))
+    assert done["deform"] == done["locate_object"] == done["segment"] == 1
+    labels = json.loads((results / "10_segment/joint.zarr.zip").read_text())
+    found = results / "07_fusion/located/deformed_sdf.zarr.zip"
+    assert labels["inputs"]["located"] == hashlib.sha256(found.read_bytes()).hexdigest()
 
 
 def test_variants_cut_again_with_their_settings_and_get_a_table(finished):
@@ -282,7 +289,9 @@ def test_where_depth_needs_stereo_whole_images_are_matched_before_the_object_is_
 def test_points_switched_off_need_no_stereo(finished):
     (finished.folder / "off.yaml").write_text("methods: [deformed_sdf]\ndensify: {points: off}\n")
     output = finished.run("--configfile", "off.yaml")
-    assert jobs_done(output) == Counter(dict.fromkeys(("densify", "deform", "object", "evaluate", "collect"), 1))
+    assert jobs_done(output) == Counter(
+        dict.fromkeys(("densify", "deform", "locate_object", "object", "evaluate", "collect"), 1)
+    )
     cloud = json.loads((finished.folder / "results/sample/08_densify/points.zarr.zip").read_text())
     assert cloud["inputs"]["stereo"] is None
 

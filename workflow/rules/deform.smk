@@ -22,7 +22,7 @@ rule deform:
         settings=settings_of("deform"),
         seed=config["seed"],
         labels=lambda wildcards: {
-            name: settings_of("object")(wildcards)[name]
+            name: settings_of("locate_object")(wildcards)[name]
             for name in ("clearance", "noise_clearance")
         },
     message:

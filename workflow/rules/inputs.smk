@@ -111,10 +111,24 @@ def labels_of_method(wildcards):
     return f"results/{wildcards.sequence}/10_segment/{name}.zarr.zip"
 
 
+def field_to_search(wildcards):
+    """Return the field that the object is looked for in."""
+    return f"results/{wildcards.sequence}/{FIELDS[wildcards.field]}"
+
+
+def segmented_method(wildcards):
+    """Return the method whose field the segmentation weighs."""
+    return f"{settings_of('segment')(wildcards)['field']}_sdf"
+
+
 def field_to_segment(wildcards):
     """Return the field that the segmentation weighs."""
-    method = f"{settings_of('segment')(wildcards)['field']}_sdf"
-    return f"results/{wildcards.sequence}/{FIELDS[method]}"
+    return f"results/{wildcards.sequence}/{FIELDS[segmented_method(wildcards)]}"
+
+
+def located_to_segment(wildcards):
+    """Return where the object is in that field."""
+    return f"results/{wildcards.sequence}/07_fusion/located/{segmented_method(wildcards)}.zarr.zip"
 
 
 def count_keyframes(input):

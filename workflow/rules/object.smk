@@ -4,11 +4,10 @@
 rule object:
     input:
         field=field_of_method,
-        support="results/{sequence}/03_scene/support.json",
+        located="results/{sequence}/07_fusion/located/{method}.zarr.zip",
         keyframes="results/{sequence}/04_crops/keyframes.json",
         poses="results/{sequence}/02_poses/poses.json",
         frames="results/{sequence}/01_frames/frames.zarr.zip",
-        semidense="results/{sequence}/04_semidense",
     output:
         mesh="results/{sequence}/11_object/{method}/mesh.ply",
         volume="results/{sequence}/11_object/{method}/volume.zarr.zip",

@@ -107,6 +107,9 @@ rule locate:
         code=code_of("locate"),
         settings=settings_of("locate"),
         seed=config["seed"],
+        labels=lambda wildcards: {
+            "clearance": settings_of("locate_object")(wildcards)["clearance"]
+        },
     message:
         "Find the support plane and the object of {wildcards.sequence}."
     script:

@@ -4,6 +4,7 @@
 rule segment:
     input:
         field=field_to_segment,
+        located=located_to_segment,
         support="results/{sequence}/03_scene/support.json",
         keyframes="results/{sequence}/04_crops/keyframes.json",
         crops="results/{sequence}/04_crops/crops.zarr.zip",

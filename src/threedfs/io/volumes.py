@@ -13,7 +13,7 @@ from threedfs.io.arrays import read_arrays, write_arrays
 from threedfs.io.documents import read_document, write_document
 from threedfs.io.grids import describe_grid, grid_of
 from threedfs.io.schema import Schema
-from threedfs.types import Box, Plane, VoxelGrid
+from threedfs.types import Box, Plane, Support, VoxelGrid
 
 SILHOUETTES = Schema("threedfs/silhouettes/1", "object, poisson, pixel_masks or cut_object")
 SUPPORT = Schema("threedfs/support/2", "locate")
@@ -34,25 +34,6 @@ class Volume:
     grid: VoxelGrid
     sdf: np.ndarray
     seen: np.ndarray
-
-
-@dataclass(frozen=True)
-class Support:
-    """Where the object stands.
-
-    Attributes
-    ----------
-    plane : Plane
-        The support surface; its positive side holds the object and the cameras.
-    box : Box
-        Around the object, standing on the plane: its third axis is the plane's normal.
-    figures : mapping of str to float
-        What the search for them found (inlier share, ...).
-    """
-
-    plane: Plane
-    box: Box
-    figures: Mapping[str, float]
 
 
 def write_volume(path: Path, volume: Volume, header: Mapping[str, Any]) -> None:

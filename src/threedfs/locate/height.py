@@ -29,6 +29,21 @@ def least_height(clearance: float, noise_clearance: float, spacing: float, noise
     return max(clearance * spacing, noise_clearance * noise)
 
 
+def known_above(seen: np.ndarray, height: np.ndarray, least: float) -> np.ndarray:
+    """Return where solids count, (nx, ny, nz) bool: voxels that views see, higher over the plane than `least`.
+
+    Parameters
+    ----------
+    seen : (nx, ny, nz) uint8
+        Number of views that see each voxel.
+    height : (nx, ny, nz) float32
+        `height_above`.
+    least : float
+        `least_height`.
+    """
+    return (seen > 0) & (height > least)
+
+
 def add_foot(voxels: np.ndarray, height: np.ndarray, grid: VoxelGrid, plane: Plane, clearance: float) -> np.ndarray:
     """Add to an object found above the clearance the voxels between it and the plane, straight below it.
 

@@ -31,7 +31,9 @@ def extract_surface(sdf: np.ndarray, grid: VoxelGrid) -> Mesh:
         If the field is negative nowhere.
     """
     if not (sdf < 0).any():
-        raise UserError("The object's field is positive everywhere, so it has no surface; lower object.clearance.")
+        raise UserError(
+            "The object's field is positive everywhere, so it has no surface; lower locate_object.clearance."
+        )
     away = np.where(sdf < 0, np.minimum(sdf, -_LEAST), np.maximum(sdf, _LEAST))
     padded = np.pad(away, 1, constant_values=1)
     # Lewiner's variant, the default, puts four triangles on an edge where clipped values tie.

@@ -30,6 +30,7 @@ STAGES = (
     "locate",
     "fuse_object",
     "fuse_baseline",
+    "locate_object",
     "densify",
     "deform",
     "superpixels",

@@ -18,7 +18,7 @@ from threedfs.deform.evidence import (
 from threedfs.io.oriented_points import read_oriented_points
 from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.job import Job
-from threedfs.locate.height import height_above, least_height
+from threedfs.locate.height import height_above, known_above, least_height
 from threedfs.params.deform import DeformParams
 
 
@@ -80,6 +80,6 @@ def run(
         )
         if params.keep_apart:
             least = least_height(clearance, noise_clearance, fused.grid.spacing, place.figures["plane_noise"])
-            above = (fused.seen > 0) & (height_above(place.plane, fused.grid) > least)
+            above = known_above(fused.seen, height_above(place.plane, fused.grid), least)
             sdf = keep_apart(fused.sdf, sdf, above)
     write_volume(volume, Volume(fused.grid, sdf, fused.seen), job.header)

@@ -6,21 +6,13 @@ from pathlib import Path
 
 import numpy as np
 
-from threedfs.errors import UserError
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.point_clouds import read_semidense_points
 from threedfs.io.points import read_points
-from threedfs.io.volumes import Support, read_volume, write_support
+from threedfs.io.volumes import read_volume, write_support
 from threedfs.job import Job
-from threedfs.locate.box import enclose_object, measure_thickness
-from threedfs.locate.component import choose_standing_component, mark_points
-from threedfs.locate.fixation import find_fixation, find_up, viewing_distance
-from threedfs.locate.height import height_above
-from threedfs.locate.support import SupportRule, find_support
-from threedfs.locate.surface import zero_crossings
+from threedfs.locate.scene import SceneRule, find_in_scene
 from threedfs.params.locate import LocateParams
-
-_SAMPLE = 4000  # semi-dense points of a keyframe that take part in the search for the plane
 
 
 def run(
@@ -30,69 +22,42 @@ def run(
     points: Path,
     semidense: list[Path],
     support: Path,
+    clearance: float,
     params: LocateParams,
     job: Job,
 ) -> None:
-    """Read the scene's volume and the points; write the plane and the object's box."""
+    """Read the scene's volume and the points; write the plane and the object's box.
+
+    `clearance` is the least height above the plane from which voxels may belong to the object, voxels.
+    """
     volume = read_volume(scene)
-    grid = volume.grid
     entries = read_keyframes(keyframes)
-    views = [entry.view for entry in entries.values()]
-    fixation = find_fixation(views, np.median(read_points(points).xyz, axis=0))
-    distance = viewing_distance(views, fixation)
-    rule = SupportRule(
-        tolerance=params.plane_tolerance * grid.spacing,
-        doublings=params.plane_doublings,
-        reach=params.plane_reach * distance,
-        max_tilt=params.plane_max_tilt,
-        min_share=params.plane_min_share,
-        candidates=params.plane_candidates,
+    found = find_in_scene(
+        volume.grid,
+        volume.sdf,
+        volume.seen,
+        [entry.view for entry in entries.values()],
+        read_points(points).xyz,
+        read_semidense_points(entries, semidense, params.point_deviation),
+        SceneRule(
+            plane_tolerance=params.plane_tolerance,
+            plane_doublings=params.plane_doublings,
+            plane_reach=params.plane_reach,
+            plane_max_tilt=params.plane_max_tilt,
+            plane_min_share=params.plane_min_share,
+            plane_candidates=params.plane_candidates,
+            clearance=clearance,
+            clearance_doublings=params.clearance_doublings,
+            object_reach=params.object_reach,
+            bridge=params.bridge,
+            box_margin=params.box_margin,
+        ),
+        np.random.default_rng(job.seed),
     )
-    generator = np.random.default_rng(job.seed)
-    sample, holds = [], np.zeros(grid.shape, bool)
-    for cloud in read_semidense_points(entries, semidense, params.point_deviation):
-        mark_points(grid, cloud, holds)
-        sample.append(generator.choice(cloud, min(len(cloud), _SAMPLE), replace=False))
-    found = find_support(
-        *zero_crossings(grid, volume.sdf, volume.seen),
-        np.concatenate(sample),
-        centres=np.stack([view.centre for view in views]),
-        fixation=fixation,
-        up=find_up(views, fixation),
-        rule=rule,
-        generator=generator,
-    )
-    height = height_above(found.plane, grid)
-    chosen = choose_standing_component(
-        (volume.sdf < 0) & (volume.seen > 0),
-        height,
-        grid,
-        holds,
-        fixation,
-        clearance=params.clearance * grid.spacing,
-        doublings=params.clearance_doublings,
-        reach=params.object_reach * distance,
-        bridge=params.bridge,
-    )
-    if chosen is None:
-        raise UserError(
-            "No object was found above the support plane: expected a solid with semi-dense points on it, got none; "
-            "an object lower than locate.clearance or without any texture is missed: lower locate.clearance, or film "
-            "from nearer."
-        )
-    box = enclose_object(chosen.voxels, grid, found.plane, params.box_margin)
-    figures = {
-        "plane_share": found.share,
-        "plane_noise": found.noise,
-        "plane_extent": found.extent,
-        "thickness": measure_thickness(chosen.voxels, grid.spacing),
-        "viewing_distance": distance,
-        "object_voxels": float(chosen.voxels.sum()),
-        "supported_voxels": float(chosen.support),
-        "rival_components": float(chosen.rivals),
-    }
+    figures = found.figures
     job.progress.note(
-        f"support plane with {found.share:.0%} of the nearby upward-facing surface; object of {chosen.voxels.sum()} "
-        f"voxels, {chosen.support} of them with semi-dense points, before {chosen.rivals} other components"
+        f"support plane with {figures['plane_share']:.0%} of the nearby upward-facing surface; object of "
+        f"{figures['object_voxels']:.0f} voxels, {figures['supported_voxels']:.0f} of them with semi-dense points, "
+        f"before {figures['rival_components']:.0f} other components"
     )
-    write_support(support, Support(found.plane, box, figures), job.header)
+    write_support(support, found, job.header)

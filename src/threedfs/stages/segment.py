@@ -10,12 +10,12 @@ from threedfs.io.consistency import read_consistency
 from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_depth_map
 from threedfs.io.keyframes import read_keyframes
+from threedfs.io.located import read_located
 from threedfs.io.point_clouds import read_semidense_maps
 from threedfs.io.segmentation import Segmentation, write_segmentation
 from threedfs.io.superpixels import read_superpixels
 from threedfs.io.volumes import read_support, read_volume
 from threedfs.job import Job
-from threedfs.locate.height import least_height
 from threedfs.params.segment import SegmentParams
 from threedfs.segment.energy import OBJECT
 from threedfs.segment.gather import GatherRule, Scene, gather_images, gather_voxels
@@ -27,6 +27,7 @@ from threedfs.segment.refine import RefineRule, refine_mask
 def run(
     *,
     field: Path,
+    located: Path,
     support: Path,
     keyframes: Path,
     crops: Path,
@@ -39,34 +40,23 @@ def run(
     params: SegmentParams,
     job: Job,
 ) -> None:
-    """Read the fused field and what the keyframes show; write labels, `joint` or of the `images` alone."""
-    fused, place, entries, store = (
-        read_volume(field),
-        read_support(support),
-        read_keyframes(keyframes),
-        read_crops(crops),
-    )
+    """Read a field, the object in it and what the keyframes show; write labels, `joint` or of the `images` alone."""
+    place, entries, store = read_located(located), read_keyframes(keyframes), read_crops(crops)
     views = {name: entry.view for name, entry in entries.items()}
     trust = read_consistency(consistency)
     scene = Scene(
-        fused.grid,
-        fused.sdf,
-        fused.seen,
-        place.plane,
-        place.box,
-        clearance=least_height(
-            params.clearance, params.noise_clearance, fused.grid.spacing, place.figures["plane_noise"]
-        ),
+        place,
+        read_volume(field).sdf,
+        read_support(support).box,
         views=views,
         images={name: store.image(name) for name in views},
         valid={name: store.valid_of(name) for name in views},
         superpixels={path.name.removesuffix(".zarr.zip"): read_superpixels(path) for path in superpixels},
         depth={path.name.removesuffix(".zarr.zip"): read_depth_map(path).depth for path in depth},
         confidence={name: trust.read(name).confidence for name in views},
-        semidense=read_semidense_maps(semidense, params.point_deviation),
+        semidense=read_semidense_maps(semidense, params.point_deviation) if params.links == "semidense" else {},
     )
     gather = GatherRule(
-        object_reach=params.object_reach,
         outer_level=params.outer_level,
         outer_height=params.outer_height,
         outer_margin=params.outer_margin,
@@ -110,7 +100,7 @@ def run(
     found = segment_jointly(images, volume if cut == "joint" else None, rule, generator, job.progress.note)
     masks = {name: images[name].superpixels.paint(own == OBJECT) for name, own in found.superpixels.items()}
     if params.refine:
-        drawn = {} if found.voxels is None else draw_voxels(found.voxels == OBJECT, fused.grid, views)
+        drawn = {} if found.voxels is None else draw_voxels(found.voxels == OBJECT, place.grid, views)
         finer = RefineRule(
             color_cap=params.color_cap,
             color_weight=params.color_weight,
@@ -124,4 +114,4 @@ def run(
             for name, own in job.progress.track(found.superpixels.items(), "mask", len(views))
         }
     voxels = np.zeros((0, 0, 0), np.uint8) if found.voxels is None else found.voxels
-    write_segmentation(labels, Segmentation(masks, fused.grid, voxels, found.energies, found.swaps), job.header)
+    write_segmentation(labels, Segmentation(masks, place.grid, voxels, found.energies, found.swaps), job.header)
