@@ -17,7 +17,6 @@ from scipy.linalg import cho_factor, cho_solve
 from threedfs.depth.bending import HALF_OFFSETS
 from threedfs.depth.galerkin import BORDER, Level, flat_offsets
 
-
 _VISITS = 2
 """Times that a grid is visited from the next finer one, if it is one of the first coarse ones: the second visit mends
 what bilinear interpolation does to a bending energy, and spares two of three steps of conjugate gradients."""
@@ -31,7 +30,7 @@ _SECOND_RATE = 12 / 5
 
 
 class Preconditioner:
-    """A cycle for sum_k factor_k * hierarchy_k, in single precision: W over the first coarse grids, V over the others."""
+    """A cycle for sum_k factor_k * hierarchy_k, in single precision: W over the first coarse grids, V below."""
 
     def __init__(self, hierarchies: list[list[Level]], factors: list[float]) -> None:
         self._shapes = [level.shape for level in hierarchies[0]]
@@ -130,7 +129,10 @@ def _add_scaled(out, plane, factor):
 
 @njit(cache=True)
 def _subtract_row(planes, active, offsets, x, right, first, width, out):
-    """Fill `out`, a row without its border, with `right` less the product with `x`; two planes at a time."""
+    """Fill `out`, a row without its border, with `right` less the product with `x`.
+
+    Planes are taken two at a time, for speed: all stencils couple a pixel with an even number of steps.
+    """
     last = first + width
     centre = planes[0, first:last]
     here = x[first:last]
@@ -138,9 +140,9 @@ def _subtract_row(planes, active, offsets, x, right, first, width, out):
     for u in range(width):
         out[u] = given[u] - centre[u] * here[u]
     for n in range(0, len(active) - 1, 2):
-        k, l, o, p = active[n], active[n + 1], offsets[n], offsets[n + 1]
+        k, j, o, p = active[n], active[n + 1], offsets[n], offsets[n + 1]
         ahead1, behind1 = planes[k, first:last], planes[k, first - o : last - o]
-        ahead2, behind2 = planes[l, first:last], planes[l, first - p : last - p]
+        ahead2, behind2 = planes[j, first:last], planes[j, first - p : last - p]
         x_ahead1, x_behind1 = x[first + o : last + o], x[first - o : last - o]
         x_ahead2, x_behind2 = x[first + p : last + p], x[first - p : last - p]
         for u in range(width):
