@@ -68,12 +68,12 @@ def _sample_line(image, u, v, step_u, step_v, samples):
 
 @njit(cache=True)
 def _compare(samples, template, differences):
-    """Fill in for each place the squared difference to the template, whose mean is 0, less that of means; find the least.
+    """Fill in for each place the squared difference to the template, whose mean is 0, less that of means.
 
     Returns
     -------
     seen, best : int
-        Places at which all samples are known, and the first of least difference; -1 without any. The others'
+        Places at which all samples are known, and the first of those of least difference; -1 without any. The others'
         difference is infinite.
     """
     t0, t1, t2, t3, t4 = template
