@@ -75,7 +75,7 @@ def make_scene(views: int = 8, shrink: float = 0.0, size: int = 40) -> tuple[Sce
         images={name: image for name, (image, _, _) in shots.items()},
         valid=valid,
         superpixels={
-            name: split_image(image, valid, blank, count=500, compactness=10.0) for name, (image, _, _) in shots.items()
+            name: split_image(image, valid, blank, area=21.6, compactness=10.0) for name, (image, _, _) in shots.items()
         },
         depth={name: depth for name, (_, depth, _) in shots.items()},
         confidence={name: np.ones(CAMERA.shape, np.float32) for name in shots},

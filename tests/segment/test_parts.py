@@ -33,7 +33,7 @@ def halves() -> Superpixels:
     image[:, 4:] = 255
     strength = np.zeros((6, 8), np.float32)
     strength[:, 3:5] = 0.5
-    return split_image(image, np.ones((6, 8), bool), strength, count=2, compactness=0.1)
+    return split_image(image, np.ones((6, 8), bool), strength, area=24.0, compactness=0.1)
 
 
 def test_superpixels_are_numbered_and_know_their_boundaries():
@@ -48,7 +48,7 @@ def test_superpixels_leave_out_what_is_not_valid():
     image = rng.integers(0, 255, (40, 50, 3)).astype(np.uint8)
     valid = np.ones((40, 50), bool)
     valid[:, :7] = False
-    found = split_image(image, valid, np.zeros((40, 50), np.float32), count=30, compactness=10)
+    found = split_image(image, valid, np.zeros((40, 50), np.float32), area=67.0, compactness=10)
     assert (found.index[~valid] == -1).all() and (found.index[valid] >= 0).all()
     assert found.sizes.sum() == valid.sum() and (found.sizes > 0).all()
     assert not found.paint(np.ones(found.count, bool))[~valid].any()

@@ -8,7 +8,15 @@ import pytest
 from threedfs.geometry.projection import backproject, project
 from threedfs.params.semidense import SemidenseParams
 from threedfs.semidense.gradient import find_textured, image_gradient, to_grey
-from threedfs.semidense.observe import FOUND, NOT_SEARCHED, TEMPLATE_MARGIN, SearchRule, search_line
+from threedfs.semidense.observe import (
+    FOUND,
+    NOT_SEARCHED,
+    TEMPLATE_MARGIN,
+    WORK,
+    SearchRule,
+    _compare,
+    search_line,
+)
 from threedfs.semidense.pair import relate
 
 PARAMS = SemidenseParams()
@@ -22,7 +30,9 @@ def search(scene, u, v, low=BOUNDS[0], high=BOUNDS[1], neighbour=0, grey=None, o
     other = to_grey(image) if other is None else other
     other_valid = np.ones(other.shape, bool) if other_valid is None else other_valid
     pair = relate(scene.keyframe.view, view)
-    return search_line(grey, *image_gradient(grey), other, other_valid, u, v, low, high, BOUNDS, pair, rule)
+    other = np.where(other_valid, other, np.float32(np.nan))
+    work = np.empty((2, WORK))
+    return search_line(grey, *image_gradient(grey), other, u, v, low, high, BOUNDS, pair, rule, work)
 
 
 def search_many(scene, **given):
@@ -31,6 +41,20 @@ def search_many(scene, **given):
     results = [search(scene, u, v, **given) for u, v in zip(columns, rows, strict=True)]
     outcome, found, variance = (np.array(part) for part in zip(*results, strict=True))
     return outcome, found, variance, 1 / scene.depth[rows, columns]
+
+
+def test_differences_are_those_of_windows():
+    """Oracle: each window less its mean against the template; windows with an unknown sample count as infinite."""
+    rng = np.random.default_rng(0)
+    samples, template = rng.uniform(0, 255, 40), rng.uniform(-90, 90, 5)
+    samples[17] = np.nan
+    template -= template.mean()
+    windows = np.lib.stride_tricks.sliding_window_view(samples, 5)
+    expected = ((windows - windows.mean(axis=1, keepdims=True) - template) ** 2).sum(axis=1)
+    found = np.empty(36)
+    seen, best = _compare(samples, tuple(template), found)
+    np.testing.assert_allclose(found, np.where(np.isnan(expected), np.inf, expected), rtol=1e-9)
+    assert seen == 31 and best == np.nanargmin(expected)
 
 
 def test_pair_geometry_agrees_with_projection(make_scene):

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from skimage.segmentation import slic
+
+from threedfs.segment.slic import cluster_pixels
 
 
 @dataclass(frozen=True)
@@ -71,12 +72,7 @@ def split_image(
     compactness : float
         Lab units of colour difference that weigh as much as the distance between two superpixels.
     """
-    index = slic(image, n_segments=max(1, round(valid.size / area)), compactness=compactness, start_label=0).astype(
-        np.int64
-    )
-    _, numbers = np.unique(index[valid], return_inverse=True)
-    index = np.full(valid.shape, -1, np.int32)
-    index[valid] = numbers
+    index = cluster_pixels(image, valid, area=area, compactness=compactness)
     return Superpixels(index, *_measure_boundaries(index, strength))
 
 
