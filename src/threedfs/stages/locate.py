@@ -13,6 +13,7 @@ from threedfs.io.volumes import read_volume, write_support
 from threedfs.job import Job
 from threedfs.locate.scene import SceneRule, find_in_scene
 from threedfs.params.locate import LocateParams
+from threedfs.params.rules import make_rule
 
 
 def run(
@@ -39,19 +40,7 @@ def run(
         [entry.view for entry in entries.values()],
         read_points(points).xyz,
         read_semidense_points(entries, semidense, params.point_deviation),
-        SceneRule(
-            plane_tolerance=params.plane_tolerance,
-            plane_doublings=params.plane_doublings,
-            plane_reach=params.plane_reach,
-            plane_max_tilt=params.plane_max_tilt,
-            plane_min_share=params.plane_min_share,
-            plane_candidates=params.plane_candidates,
-            clearance=clearance,
-            clearance_doublings=params.clearance_doublings,
-            object_reach=params.object_reach,
-            bridge=params.bridge,
-            box_margin=params.box_margin,
-        ),
+        make_rule(SceneRule, params, clearance=clearance),
         np.random.default_rng(job.seed),
     )
     figures = found.figures
