@@ -82,10 +82,12 @@ ARTIFACTS = [
     ),
     Artifact(
         "features.zarr.zip",
-        [  # the middle frame shows nothing
-            Features(RANDOM.random((count, 2)), *(RANDOM.integers(0, 256, (count, n), np.uint8) for n in (128, 3)))
-            for count in (3, 0, 2)
-        ],
+        {  # the middle frame shows nothing
+            frame: Features(
+                RANDOM.random((count, 2)), *(RANDOM.integers(0, 256, (count, n), np.uint8) for n in (128, 3))
+            )
+            for frame, count in ((0, 3), (2, 0), (4, 2))
+        },
         features.write_features,
         features.read_features,
     ),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -84,6 +86,24 @@ def test_found_depth_is_true(make_scene, neighbour_focal):
     assert np.median(deviation) < 0.5
     # A single search over the whole range meets false matches, which only the other neighbours can tell.
     assert np.mean(deviation > 2) < 0.1
+
+
+def test_a_neighbour_of_another_shape_finds_the_same(make_scene):
+    """Property: columns and rows taken off a neighbour; its camera moves along, and what is found in both is the same.
+
+    But where the true place was taken off, and another one passes for it.
+    """
+    scene = make_scene()
+    view, image = scene.neighbours[0]
+    camera = view.camera
+    less = replace(camera, width=camera.width - 30, height=camera.height - 20, cx=camera.cx - 30, cy=camera.cy - 20)
+    neighbours = (replace(view, camera=less), *scene.keyframe.neighbours[1:])
+    images = {**scene.images, view.name: np.ascontiguousarray(image[20:, 30:])}
+    cut = replace(scene, keyframe=replace(scene.keyframe, neighbours=neighbours), images=images)
+    (outcome, whole, *_), (seen, part, *_) = search_many(scene), search_many(cut)
+    both = (outcome == FOUND) & (seen == FOUND)
+    assert both.sum() > 0.6 * (outcome == FOUND).sum()
+    assert np.isclose(part[both], whole[both], rtol=1e-6).mean() > 0.99
 
 
 def test_exposure_does_not_matter(make_scene):

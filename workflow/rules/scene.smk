@@ -91,7 +91,11 @@ rule locate:
         scene="results/{sequence}/03_scene/volume.zarr.zip",
         keyframes="results/{sequence}/03_scene/04_crops/keyframes.json",
         points="results/{sequence}/02_poses/points.zarr.zip",
+        crops="results/{sequence}/03_scene/04_crops/crops.zarr.zip",
         semidense="results/{sequence}/03_scene/04_semidense",
+        edges="results/{sequence}/03_scene/05_edges",
+        depth="results/{sequence}/03_scene/06_depth",
+        consistency="results/{sequence}/03_scene/07_fusion/consistency.zarr.zip",
     output:
         support="results/{sequence}/03_scene/support.json",
     log:
@@ -108,7 +112,8 @@ rule locate:
         settings=settings_of("locate"),
         seed=config["seed"],
         labels=lambda wildcards: {
-            "clearance": settings_of("locate_object")(wildcards)["clearance"]
+            "clearance": settings_of("locate_object")(wildcards)["clearance"],
+            "segmentation": settings_of("segment")(wildcards),
         },
     message:
         "Find the support plane and the object of {wildcards.sequence}."

@@ -38,6 +38,18 @@ def make_colmap_camera(lens: Lens, camera_id: int) -> pycolmap.Camera:
     )
 
 
+def make_simple_camera(lens: Lens, camera_id: int) -> pycolmap.Camera:
+    """Return a COLMAP camera to be refined: one focal length, that across, and k1 (model SIMPLE_RADIAL)."""
+    camera = lens.camera
+    return pycolmap.Camera(
+        camera_id=camera_id,
+        model=pycolmap.CameraModelId.SIMPLE_RADIAL,
+        width=camera.width,
+        height=camera.height,
+        params=[camera.fx, *colmap_from_px(np.array([camera.cx, camera.cy])), lens.k1],
+    )
+
+
 def guess_colmap_camera(width: int, height: int, focal_factor: float, camera_id: int) -> pycolmap.Camera:
     """Return a COLMAP camera to be self-calibrated: one focal length and k1, its centre in the image's middle."""
     return pycolmap.Camera.create_from_model_id(

@@ -18,6 +18,17 @@ def cover_box(box: Box, longest: int) -> VoxelGrid:
     return VoxelGrid((box.low + spacing / 2) @ box.axes, spacing, shape, box.axes)
 
 
+def cut_grid(grid: VoxelGrid, box: Box) -> tuple[VoxelGrid, tuple[slice, slice, slice]]:
+    """Return the part of a grid that encloses a box, one voxel at least, and where it lies in the grid."""
+    corners = voxel_from_world(grid, box.corners())
+    last = np.array(grid.shape) - 1
+    low = np.clip(np.floor(corners.min(axis=0)), 0, last).astype(int)
+    high = np.clip(np.ceil(corners.max(axis=0)), low, last).astype(int)
+    part = tuple(slice(int(start), int(stop) + 1) for start, stop in zip(low, high, strict=True))
+    shape = tuple(int(count) for count in high - low + 1)
+    return VoxelGrid(world_from_index(grid, low), grid.spacing, shape, grid.axes), part
+
+
 def world_from_index(grid: VoxelGrid, index: np.ndarray) -> np.ndarray:
     """Return world points (..., 3) float64 of voxel indices (..., 3), whole or between voxel centres."""
     points = (grid.spacing * index) @ grid.axes

@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from scipy import ndimage
 from scipy.spatial import ConvexHull
 
 from threedfs.geometry.grid import world_from_index
 from threedfs.geometry.plane import axes_on
-from threedfs.types import Box, Plane, VoxelGrid
+from threedfs.types import Box, Plane, Support, VoxelGrid
 
 _CORNERS = np.array(list(np.ndindex(2, 2, 2))) - 0.5
+_INSIDE = 0.6
+"""Share of its margin that the object may take up before the box is enlarged."""
 _TIE = 1e-9
 """Relative difference of areas below which rectangles count as equal."""
 
@@ -39,6 +43,38 @@ def enclose_object(voxels: np.ndarray, grid: VoxelGrid, plane: Plane, margin: fl
     low, high = along.min(axis=0), along.max(axis=0)
     low[2] = min(low[2], -plane.offset - grid.spacing / 2)
     return Box(axes, low, high).grow(margin / 2 * (high - low).max())
+
+
+def widen_support(support: Support, known: np.ndarray, shown: np.ndarray, grid: VoxelGrid, margin: float) -> Support:
+    """Enlarge the object's box once, where what images show of the object comes near its sides.
+
+    Parameters
+    ----------
+    support : Support
+        With the box around the known voxels.
+    known, shown : (nx, ny, nz) bool
+        The object in the fused scene, and by what images show.
+    grid : VoxelGrid
+    margin : float
+        As `enclose_object` takes it.
+
+    Returns
+    -------
+    Support
+        With the same box, where `shown` keeps to `_INSIDE` of its margin. Its figures tell how much of the margin
+        `shown` takes up, more than 1 beyond the box, and how many times its volume the box has become.
+    """
+    box = support.box
+    own = margin / (2 * (1 + margin)) * box.longest
+    used, wide = 0.0, box
+    if shown.any() and own > 0:
+        along = world_from_index(grid, np.argwhere(shown)) @ box.axes.T
+        beyond = np.concatenate([box.low[:2] + own - along.min(axis=0)[:2], along.max(axis=0) - (box.high - own)])
+        used = float(beyond.max() / own)  # below, the support ends the object
+        if used > _INSIDE:
+            wide = enclose_object(known | shown, grid, support.plane, margin)
+    enlarged = float(np.prod(wide.high - wide.low) / np.prod(box.high - box.low))
+    return replace(support, box=wide, figures={**support.figures, "margin_used": used, "box_enlarged": enlarged})
 
 
 def _least_rectangle(points: np.ndarray) -> np.ndarray:

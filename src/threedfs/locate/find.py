@@ -46,6 +46,12 @@ class Located:
         return height_above(self.plane, self.grid)
 
 
+def stand_on(grid: VoxelGrid, plane: Plane, voxels: np.ndarray, least_height: float) -> Located:
+    """Return known voxels (nx, ny, nz) bool of an object, all of them above `least_height`, with its foot."""
+    height = height_above(plane, grid)
+    return Located(grid, plane, add_foot(voxels, height, grid, plane, least_height) & (height > 0), least_height, 0, 0)
+
+
 def find_object(
     grid: VoxelGrid,
     sdf: np.ndarray,

@@ -45,8 +45,8 @@ def find_in_scene(
     clouds: Iterable[np.ndarray],
     rule: SceneRule,
     generator: np.random.Generator,
-) -> Support:
-    """Find the plane that the object stands on, and a box around the object.
+) -> tuple[Support, np.ndarray]:
+    """Find the plane that the object stands on, a box around the object, and its voxels (nx, ny, nz) bool.
 
     Parameters
     ----------
@@ -115,4 +115,5 @@ def find_in_scene(
         "supported_voxels": float(chosen.support),
         "rival_components": float(chosen.rivals),
     }
-    return Support(found.plane, enclose_object(chosen.voxels, grid, found.plane, rule.box_margin), figures)
+    box = enclose_object(chosen.voxels, grid, found.plane, rule.box_margin)
+    return Support(found.plane, box, figures), chosen.voxels

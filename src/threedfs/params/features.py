@@ -9,9 +9,15 @@ from threedfs.params.field import parameter
 
 @dataclass(frozen=True)
 class FeaturesParams:
-    """Which keypoints of the frames are matched to find the cameras."""
+    """Which keypoints of which frames are matched to find the cameras."""
 
-    max_features: int = parameter(2048, "most SIFT keypoints of a frame, the largest kept", minimum=100)
+    max_frames: int = parameter(
+        75, "most frames of a video that keypoints are looked for in, at uniform steps", minimum=8
+    )
+    max_gap: float = parameter(
+        0.5, "longest time between two of them; where frames are rarer, in each", unit="s", minimum=0
+    )
+    max_features: int = parameter(1200, "most SIFT keypoints of a frame, the largest kept", minimum=100)
     min_contrast: float = parameter(
         0.00667,
         "least contrast of a keypoint; smaller finds more on faint texture",

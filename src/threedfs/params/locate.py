@@ -44,6 +44,14 @@ class LocateParams(ComponentSettings):
     bridge: int = parameter(
         1, "pieces up to twice so far apart count as one object when its box is drawn", unit="voxel", minimum=0
     )
+    box_reach: float = parameter(
+        0.4,
+        "how far around the box images are asked whether they show more of the object, which then enlarges the box; 0: "
+        "they are not asked (paper)",
+        unit="longest side of the box",
+        minimum=0.0,
+        maximum=2.0,
+    )
     box_margin: float = parameter(
         0.35, "what the box exceeds the object by, both sides together", unit="longest side of the object", minimum=0.0
     )

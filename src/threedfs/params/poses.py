@@ -11,8 +11,8 @@ from threedfs.params.field import parameter
 class PosesParams:
     """What a user may set about camera poses and sparse points."""
 
-    overlap: int = parameter(8, "a frame of a video is matched with so many following ones", minimum=1)
-    gap_overlap: int = parameter(24, "the same where some frames got no pose, to match over blurred ones", minimum=1)
+    overlap: int = parameter(5, "a frame of a video with keypoints is matched with so many following ones", minimum=1)
+    gap_overlap: int = parameter(15, "the same where some frames got no pose, to match over blurred ones", minimum=1)
     max_ratio: float = parameter(
         0.8, "largest ratio of the nearest to the second nearest descriptor's angle", exclusive_minimum=0, maximum=1
     )
@@ -63,6 +63,30 @@ class PosesParams:
     )
     second_try_share: float = parameter(
         0.15, "least share of them among its matches with known points", minimum=0, maximum=1
+    )
+    followed_points: int = parameter(
+        300, "most points followed from each of the two nearest frames into one without keypoints", minimum=20
+    )
+    followed_share: float = parameter(0.25, "least share of them that must support its pose", minimum=0, maximum=1)
+    patch_points: int = parameter(6000, "most points that are followed as patches", minimum=100)
+    patch_radius: int = parameter(7, "of a patch", unit="pixel", minimum=3, maximum=30)
+    patch_span: int = parameter(
+        24, "a point is looked for in frames of a video so near to one that sees it", unit="working frame", minimum=0
+    )
+    patch_angle: float = parameter(
+        30.0, "patches are followed to frames that look from directions so near", unit="degree", minimum=1, maximum=90
+    )
+    patch_shift: float = parameter(
+        4.0, "largest distance of a patch from where it is expected", unit="pixel", exclusive_minimum=0
+    )
+    patch_correlation: float = parameter(
+        0.85, "least correlation of a patch with what it is found at", minimum=0, maximum=1
+    )
+    patch_observations: int = parameter(
+        30, "a frame with fewer patches is adjusted by its keypoints, or has no pose if it has none", minimum=6
+    )
+    loss_width: float = parameter(
+        1.0, "reprojection errors above count less than squared", unit="pixel", exclusive_minimum=0
     )
     pair_angle: float = parameter(
         60.0,

@@ -20,6 +20,7 @@ from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.job import Job
 from threedfs.locate.height import height_above, known_above, least_height
 from threedfs.params.deform import DeformParams
+from threedfs.params.rules import make_rule
 
 
 def run(
@@ -65,16 +66,7 @@ def run(
             fused.seen,
             fused.grid,
             samples,
-            CorrectionRule(
-                rbf_width=params.rbf_width,
-                controls=params.controls,
-                control_level=params.control_level,
-                surface_points=params.surface_points,
-                anchors=params.anchors,
-                ridge=params.ridge,
-                reweightings=params.reweightings,
-                residual_scale=params.residual_scale,
-            ),
+            make_rule(CorrectionRule, params),
             np.random.default_rng(job.seed),
             job.progress.note,
         )

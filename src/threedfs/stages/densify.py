@@ -20,6 +20,7 @@ from threedfs.io.poses import read_poses
 from threedfs.io.volumes import read_support
 from threedfs.job import Job
 from threedfs.params.densify import DensifyParams
+from threedfs.params.rules import make_rule
 from threedfs.types import OrientedPoints
 
 
@@ -60,9 +61,7 @@ def run(
                     kept = np.where(patches.cost <= params.max_cost, patches.inverse_depth, np.nan)
                     normal = patch_normals(view.camera, kept, patches.slope)
                     write_patch_map(workspace, view, 1 / kept, normal)
-            rule = FusionRule(
-                params.min_pixels, params.max_depth_error, params.max_reprojection_error, params.max_normal_error
-            )
+            rule = make_rule(FusionRule, params)
             found = fuse_workspace(workspace, rule, read_support(support).box)
     job.progress.note(f"{len(found.xyz)} surface points ({engine})")
     write_oriented_points(cloud, found, [view.name for view in views], engine, job.header)

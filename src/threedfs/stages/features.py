@@ -1,15 +1,17 @@
-"""Find the keypoints of all working frames."""
+"""Find the keypoints of working frames."""
 
 from __future__ import annotations
 
 from pathlib import Path
 
-from threedfs.colmap.features import extract_features
+import cv2
+
 from threedfs.io.features import write_features
 from threedfs.io.frames import read_frames
 from threedfs.job import Job
 from threedfs.params.features import FeaturesParams
 from threedfs.poses.gates import check_features
+from threedfs.poses.keypoints import choose_frames, find_keypoints
 
 
 def run(*, frames: Path, features: Path, params: FeaturesParams, job: Job) -> None:
@@ -20,13 +22,16 @@ def run(*, frames: Path, features: Path, params: FeaturesParams, job: Job) -> No
     UserError
         If the frames show too little to find their cameras by.
     """
+    cv2.setNumThreads(1)  # threads are given whole frames
     store = read_frames(frames)
-    found = extract_features(
-        (store.image(name) for name in job.progress.track(store.names, "frames read")),
+    chosen = choose_frames(store.times, params.max_frames, params.max_gap, ordered=store.ordered)
+    found = find_keypoints(
+        lambda number: store.image(store.names[number]),
+        chosen,
         max_features=params.max_features,
         min_contrast=params.min_contrast,
         threads=job.threads,
     )
-    median = check_features(found, params.min_features)
-    job.progress.note(f"median of {median:.0f} keypoints a frame")
+    median = check_features(list(found.values()), params.min_features)
+    job.progress.note(f"median of {median:.0f} keypoints in each of {len(chosen)} frames")
     write_features(features, found, job.header)

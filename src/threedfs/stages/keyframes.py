@@ -21,6 +21,7 @@ from threedfs.keyframes.sectors import cluster_photos, score_frames, split_seque
 from threedfs.keyframes.selection import choose_keyframes, viewing_directions
 from threedfs.keyframes.visibility import find_visibility
 from threedfs.params.keyframes import KeyframesParams
+from threedfs.params.rules import make_rule
 from threedfs.types import Keyframe
 
 
@@ -73,15 +74,7 @@ def run(
         count=params.max_keyframes,
         max_gap=params.max_gap,
     )
-    rule = NeighbourRule(
-        count=params.neighbours,
-        min_count=params.min_neighbours,
-        min_angle=params.min_angle,
-        max_angle=params.max_angle,
-        widest_angle=params.widest_angle,
-        min_overlap=params.min_overlap,
-        min_shared=params.min_shared,
-    )
+    rule = make_rule(NeighbourRule, params, count=params.neighbours, min_count=params.min_neighbours)
     entries, alone = [], []
     for frame in job.progress.track(usable[chosen], "keyframes"):
         near, far = expect_depth_range(visibility.depth[frame], params.near_factor, params.far_factor, names[frame])

@@ -16,6 +16,7 @@ from threedfs.io.segmentation import Segmentation, write_segmentation
 from threedfs.io.superpixels import read_superpixels
 from threedfs.io.volumes import read_support, read_volume
 from threedfs.job import Job
+from threedfs.params.rules import make_rule
 from threedfs.params.segment import SegmentParams
 from threedfs.segment.energy import OBJECT
 from threedfs.segment.gather import GatherRule, Scene, gather_images, gather_voxels
@@ -56,56 +57,26 @@ def run(
         confidence={name: trust.read(name).confidence for name in views},
         semidense=read_semidense_maps(semidense, params.point_deviation) if params.links == "semidense" else {},
     )
-    gather = GatherRule(
-        outer_level=params.outer_level,
-        outer_height=params.outer_height,
-        outer_margin=params.outer_margin,
-        fill_outer=params.fill_outer,
-        inner_level=params.inner_level,
-        decided_share=params.decided_share,
+    gather = make_rule(
+        GatherRule,
+        params,
         random_first=params.first_labels == "random",
-        empty_level=params.empty_level,
-        deepest=params.deepest,
-        silhouette_ramp=params.silhouette_ramp,
-        table=params.table,
-        table_reach=params.table_reach,
-        pair_weight=params.pair_weight,
         by_mean=params.pair_edge == "mean",
-        pair_falloff=params.pair_falloff,
         surface_links=params.links == "surface",
-        link_weight=params.link_weight,
-        link_by_share=params.link_by_share,
     )
     job.progress.note(f"{cut}: the {params.field} field, {len(views)} keyframes")
     generator = np.random.default_rng(job.seed)
     volume, bounds = gather_voxels(scene, gather)
     images = gather_images(scene, volume, bounds, gather, generator)
-    rule = CutRule(
-        components=params.color_components,
-        color_superpixels=params.color_superpixels,
-        color_pixels=params.color_pixels,
-        color_cap=params.color_cap,
-        color_weight=params.color_weight,
-        roi_weight=params.roi_weight,
-        silhouette_weight=params.silhouette_weight,
-        sdf_weight=params.sdf_weight,
-        scene_weight=params.scene_weight,
-        carve_weight=params.carve_weight,
-        carve_tolerance=params.carve_tolerance,
-        voxel_pair_weight=params.voxel_pair_weight,
-        iterations=params.iterations,
-        stop_swaps=params.stop_swaps,
-        stop_share=params.stop_share,
-    )
+    rule = make_rule(CutRule, params, components=params.color_components)
     found = segment_jointly(images, volume if cut == "joint" else None, rule, generator, job.progress.note)
     masks = {name: images[name].superpixels.paint(own == OBJECT) for name, own in found.superpixels.items()}
     if params.refine:
         drawn = {} if found.voxels is None else draw_voxels(found.voxels == OBJECT, place.grid, views)
-        finer = RefineRule(
-            color_cap=params.color_cap,
-            color_weight=params.color_weight,
+        finer = make_rule(
+            RefineRule,
+            params,
             label_weight=params.refine_label_weight,
-            silhouette_weight=params.silhouette_weight,
             pair_weight=params.refine_pair_weight,
             contrast=params.refine_contrast,
         )

@@ -12,6 +12,7 @@ from threedfs.io.keyframes import read_keyframe
 from threedfs.io.points import read_points
 from threedfs.io.poses import read_poses
 from threedfs.job import Job
+from threedfs.params.rules import make_rule
 from threedfs.params.semidense import SemidenseParams
 from threedfs.semidense.estimate import FusionRule, estimate_semidense, order_by_baseline
 from threedfs.semidense.observe import SearchRule
@@ -39,24 +40,8 @@ def run(
         valid=store.valid_of(keyframe),
         neighbours=((view, store.image(view.name), store.valid_of(view.name)) for view in order_by_baseline(chosen)),
         sparse_points=sparse.xyz[sparse.seen_by(frame)],
-        search=SearchRule(
-            min_gradient_cosine2=params.min_gradient_cosine2,
-            image_noise=params.image_noise,
-            line_noise=params.line_noise,
-            max_residual=params.max_residual,
-            distinctness=params.distinctness,
-            rival_margin=params.rival_margin,
-        ),
-        rule=FusionRule(
-            min_gradient=params.min_gradient,
-            prior_radius=params.prior_radius,
-            prior_spread=params.prior_spread,
-            consistency=params.consistency,
-            min_support=params.min_support,
-            min_agreement=params.min_agreement,
-            smoothing=params.smoothing,
-            min_neighbourhood=params.min_neighbourhood,
-        ),
+        search=make_rule(SearchRule, params),
+        rule=make_rule(FusionRule, params),
     )
     write_semidense(semidense, Semidense(inverse_depth, variance), job.header)
     job.progress.note(f"{keyframe}: {int(np.isfinite(inverse_depth).sum())} semi-dense points")

@@ -12,6 +12,7 @@ from threedfs.io.depth_maps import StereoMap, read_semidense, write_stereo
 from threedfs.io.keyframes import read_keyframe
 from threedfs.io.volumes import read_support
 from threedfs.job import Job
+from threedfs.params.rules import make_rule
 from threedfs.params.stereo import StereoParams
 from threedfs.stereo.patch_match import PatchRule, match_patches
 from threedfs.stereo.region import mask_box
@@ -48,14 +49,7 @@ def run(
         wanted,
         near=entry.near,
         far=entry.far,
-        rule=PatchRule(
-            radius=params.radius,
-            stride=params.stride,
-            likeness=params.likeness,
-            variance_floor=params.variance_floor,
-            least_variance=params.least_variance,
-            best_views=params.best_views,
-        ),
+        rule=make_rule(PatchRule, params),
         levels=params.levels,
         rounds=params.rounds,
         seed=job.seed,

@@ -15,6 +15,7 @@ from threedfs.io.volumes import read_support
 from threedfs.job import Job
 from threedfs.locate.fixation import find_fixation
 from threedfs.locate.height import height_above
+from threedfs.params.rules import make_rule
 from threedfs.params.volumetric_cut import VolumetricCutParams
 from threedfs.segment.volumetric import VolumetricRule, cut_volume
 
@@ -44,16 +45,7 @@ def run(
         height_above(place.plane, grid),
         votes,
         find_fixation(list(views.values()), place.box.centre),
-        VolumetricRule(
-            components=params.components,
-            color_pixels=params.color_pixels,
-            least_posterior=params.least_posterior,
-            fixation_radius=params.fixation_radius,
-            pair_weight=params.pair_weight,
-            vote_scale=params.vote_scale,
-            iterations=params.iterations,
-            stop_share=params.stop_share,
-        ),
+        make_rule(VolumetricRule, params),
         np.random.default_rng(job.seed),
         job.progress.note,
     )

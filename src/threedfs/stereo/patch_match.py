@@ -73,7 +73,7 @@ def match_patches(
     grey : (H, W) float32
         Centred grey levels, `MISSING` where the image shows nothing.
     neighbours, images : sequences of View and of (H2, W2) float32
-        What the patch is sought in, in the same form, each of its own size.
+        What the patch is sought in, in the same form; each may have a shape of its own.
     measured : (H, W) float64
         Inverse depth to start from, NaN where there is none.
     wanted : (H, W) bool
@@ -106,13 +106,12 @@ def match_patches(
     )
     planes = None
     for level in reversed(range(levels)):
-        shape = tuple(-(-side // 2**level) for side in grey.shape)
+        shape = _shape_at(level, grey.shape)
         view = _resize_view(reference, shape)
         small = _shrink(grey, shape)
-        shapes = [tuple(-(-side // 2**level) for side in image.shape) for image in images]
-        stack = _stack([_shrink(image, own) for image, own in zip(images, shapes, strict=True)])
-        others = [_resize_view(each, own) for each, own in zip(neighbours, shapes, strict=True)]
-        views = (stack, *neighbour_maps(view, others))
+        shrunk = [_shrink(image, _shape_at(level, image.shape)) for image in images]
+        resized = [_resize_view(each, image.shape) for each, image in zip(neighbours, shrunk, strict=True)]
+        views = (_stack(shrunk), *neighbour_maps(view, resized))
         if planes is None:
             planes = guess_planes(_sample(measured, shape), near, far, np.random.default_rng(seed))
         else:
@@ -171,6 +170,19 @@ def neighbour_maps(reference: View, neighbours: Sequence[View]) -> tuple[np.ndar
     return np.array(infinity), np.array(epipole)
 
 
+def _shape_at(level: int, shape: tuple[int, int]) -> tuple[int, int]:
+    return tuple(-(-side // 2**level) for side in shape)
+
+
+def _stack(images: Sequence[np.ndarray]) -> np.ndarray:
+    """Stack images of any shapes: (N, H, W) float32, `MISSING` beyond each."""
+    shape = np.max([image.shape for image in images], axis=0)
+    stack = np.full((len(images), *shape), MISSING)
+    for place, image in zip(stack, images, strict=True):
+        place[: image.shape[0], : image.shape[1]] = image
+    return stack
+
+
 def _resize_view(view: View, shape: tuple[int, int]) -> View:
     return View(view.name, scale_camera(view.camera, shape, view.name), view.cam_from_world)
 
@@ -179,15 +191,6 @@ def _shrink(grey: np.ndarray, shape: tuple[int, int]) -> np.ndarray:
     if grey.shape == shape:
         return grey
     return cv2.resize(grey, shape[::-1], interpolation=cv2.INTER_AREA)
-
-
-def _stack(images: Sequence[np.ndarray]) -> np.ndarray:
-    """Return images of different sizes as one array, `MISSING` beyond each."""
-    rows, columns = np.max([image.shape for image in images], axis=0)
-    stack = np.full((len(images), rows, columns), MISSING, np.float32)
-    for layer, image in zip(stack, images, strict=True):
-        layer[: image.shape[0], : image.shape[1]] = image
-    return stack
 
 
 def _nearest(shape: tuple[int, int], source: tuple[int, int]) -> tuple[np.ndarray, np.ndarray]:
