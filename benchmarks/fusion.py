@@ -17,7 +17,7 @@ from threedfs.fusion.softmax import SoftMaximum, estimate_fusion_memory
 from threedfs.geometry.grid import cover_box
 from threedfs.geometry.projection import backproject_map
 from threedfs.geometry.rigid import look_at
-from threedfs.types import Camera, View
+from threedfs.types import Box, Camera, View
 
 CAMERA = Camera(640, 480, 525.0, 525.0, 319.5, 239.5)
 UP = np.array([0.0, 0, 1])
@@ -39,7 +39,7 @@ def table_depth(view: View) -> np.ndarray:
 
 def measure(views: list[View], depths: list[np.ndarray], longest: int, threads: int) -> list[tuple[float, float]]:
     """Return wall and core nanoseconds per voxel and view of fusion, then per pixel and pair of the consistency."""
-    grid = cover_box(np.full(3, -0.4), np.full(3, 0.4), longest)
+    grid = cover_box(Box(np.eye(3), np.full(3, -0.4), np.full(3, 0.4)), longest)
     trust, free = np.ones(CAMERA.shape), np.full(CAMERA.shape, np.inf)
     fused = SoftMaximum(grid, 4 * grid.spacing, 10.0, distrust=40.0, discontinuity=0.02, threads=threads)
     start = _clocks()

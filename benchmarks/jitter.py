@@ -30,11 +30,11 @@ from threedfs.io.volumes import read_support
 from threedfs.job import Job
 from threedfs.params.deform import DeformParams
 from threedfs.params.fuse_object import FuseObjectParams
-from threedfs.params.object import ObjectParams
+from threedfs.params.locate_object import LocateObjectParams
 from threedfs.params.schema import default_settings, make_params
 from threedfs.progress import Progress
 from threedfs.run_end.film import relate_film
-from threedfs.stages import deform, fuse_object
+from threedfs.stages import deform, fuse_object, locate_object
 from threedfs.stages import object as object_stage
 from threedfs.types import Keyframe, Mesh, OrientedPoints
 
@@ -65,7 +65,7 @@ def measure(results: Path, folder: Path, level: float, corrections: Mapping[str,
     job = Job(Progress("jitter", io.StringIO()), {}, 2, 0)
     support = results / "07_fusion/support.json"
     place, rng = read_support(support), np.random.default_rng(0)
-    deviation = level / 100 * float((place.high - place.low).max())
+    deviation = level / 100 * place.box.longest
     keyframes = read_keyframes(results / "03_keyframes/keyframes.json")
     steps = rng.normal(0, deviation, (len(keyframes), 3))
     write_keyframes(folder / "keyframes.json", jitter_cameras(keyframes, steps), {})
@@ -90,27 +90,35 @@ def measure(results: Path, folder: Path, level: float, corrections: Mapping[str,
             support=support,
             cloud=folder / "points.zarr.zip",
             volume=fields[name],
-            clearance=ObjectParams().clearance,
-            noise_clearance=ObjectParams().noise_clearance,
+            clearance=LocateObjectParams().clearance,
+            noise_clearance=LocateObjectParams().noise_clearance,
             params=params,
             job=job,
         )
     truth, truth_from_scene = read_mesh(results / "00_render/mesh.ply"), relate_film(results).from_scene
     scores = []
     for name, field in fields.items():
+        locate_object.run(
+            volume=field,
+            support=support,
+            keyframes=folder / "keyframes.json",
+            semidense=maps["04_semidense"],
+            located=folder / "located.zarr.zip",
+            field=name,
+            params=LocateObjectParams(),
+            job=job,
+        )
         object_stage.run(
             field=field,
-            support=support,
+            located=folder / "located.zarr.zip",
             keyframes=folder / "keyframes.json",
             poses=results / "02_poses/poses.json",
             frames=results / "01_frames/frames.zarr.zip",
-            semidense=maps["04_semidense"],
             mesh=folder / "mesh.ply",
             volume=folder / "alone.zarr.zip",
             silhouettes=folder / "silhouettes.zarr.zip",
             masks=folder / f"masks_{name}",
             method=name,
-            params=ObjectParams(),
             job=job,
         )
         mesh = read_mesh(folder / "mesh.ply")

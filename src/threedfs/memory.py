@@ -11,6 +11,7 @@ _BYTES_PER_VOXEL = {
     "fuse_object": 40,
     "fuse_baseline": 40,
     "deform": 40,
+    "locate_object": 30,
     "object": 60,
     "cut_object": 150,
     "segment": 140,

@@ -6,7 +6,8 @@ Conventions (docs/conventions.md): right-handed; camera x right, y down, z forwa
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -151,21 +152,90 @@ class OrientedPoints:
         """(N,) int64, by how many keyframes each point is seen."""
         return np.bincount(self.seen_point, minlength=len(self.xyz))
 
+    def take(self, kept: np.ndarray) -> OrientedPoints:
+        """Return those of the points, with their sightings, for which `kept` (N,) bool is true."""
+        renumbered = np.cumsum(kept) - 1
+        seen = kept[self.seen_point]
+        return OrientedPoints(
+            self.xyz[kept],
+            self.normal[kept],
+            self.rgb[kept],
+            renumbered[self.seen_point[seen]],
+            self.seen_view[seen],
+        )
+
+
+@dataclass(frozen=True)
+class Box:
+    """A box of the world: the points x with low <= axes @ x <= high.
+
+    Attributes
+    ----------
+    axes : (3, 3) float64
+        Rows are the world directions of its sides, orthonormal, right-handed.
+    low, high : (3,) float64
+        Coordinates of its faces along its axes, scene units.
+    """
+
+    axes: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+
+    @property
+    def centre(self) -> np.ndarray:
+        """(3,) float64, world."""
+        return (self.low + self.high) / 2 @ self.axes
+
+    @property
+    def longest(self) -> float:
+        """Length of its longest side, scene units."""
+        return float((self.high - self.low).max())
+
+    def grow(self, reach: float) -> Box:
+        """Return the box that reaches farther to every side, scene units."""
+        return Box(self.axes, self.low - reach, self.high + reach)
+
+    def contains(self, points: np.ndarray) -> np.ndarray:
+        """Say which world points (..., 3) lie in it, faces included; NaN is outside."""
+        along = points @ self.axes.T
+        return ((along >= self.low) & (along <= self.high)).all(axis=-1)
+
+    def corners(self) -> np.ndarray:
+        """Return its eight corners (8, 3), world."""
+        return np.array([np.where([i & 1, i & 2, i & 4], self.high, self.low) for i in range(8)]) @ self.axes
+
 
 @dataclass(frozen=True)
 class VoxelGrid:
-    """A regular grid: `origin` (3,) is the centre of voxel (0, 0, 0), `spacing` its edge, `shape` (nx, ny, nz).
+    """A regular grid. Volumes on it are indexed [ix, iy, iz] with values at voxel centres.
 
-    Volumes on it are indexed [ix, iy, iz] with values at voxel centres. World coordinates, scene units.
+    Attributes
+    ----------
+    origin : (3,) float64
+        Centre of voxel (0, 0, 0), world.
+    spacing : float
+        Edge of a voxel, scene units.
+    shape : (int, int, int)
+        (nx, ny, nz)
+    axes : (3, 3) float64
+        Rows are the world directions of its axes, orthonormal, right-handed.
     """
 
     origin: np.ndarray
     spacing: float
     shape: tuple[int, int, int]
+    axes: np.ndarray = field(default_factory=lambda: np.eye(3))
+
+    @property
+    def world_from_voxel(self) -> np.ndarray:
+        """(4, 4) float64, from homogeneous voxel indices to the world."""
+        matrix = np.eye(4)
+        matrix[:3, :3], matrix[:3, 3] = self.spacing * self.axes.T, self.origin
+        return matrix
 
     def axis(self, dimension: int) -> np.ndarray:
-        """Coordinates of the voxel centres along one axis, (shape[dimension],) float64."""
-        return self.origin[dimension] + self.spacing * np.arange(self.shape[dimension])
+        """Coordinates of the voxel centres along one of its axes, (shape[dimension],) float64: axes[dimension] @ x."""
+        return self.axes[dimension] @ self.origin + self.spacing * np.arange(self.shape[dimension])
 
 
 @dataclass(frozen=True)
@@ -178,6 +248,25 @@ class Plane:
     def distance(self, points: np.ndarray) -> np.ndarray:
         """Signed distance of points (..., 3), scene units."""
         return points @ self.normal + self.offset
+
+
+@dataclass(frozen=True)
+class Support:
+    """Where the object stands.
+
+    Attributes
+    ----------
+    plane : Plane
+        The support surface; its positive side holds the object and the cameras.
+    box : Box
+        Around the object, standing on the plane: its third axis is the plane's normal.
+    figures : mapping of str to float
+        What the search for them found (inlier share, ...).
+    """
+
+    plane: Plane
+    box: Box
+    figures: Mapping[str, float]
 
 
 @dataclass(frozen=True)

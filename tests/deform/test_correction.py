@@ -22,9 +22,9 @@ from threedfs.deform.ridge import fit_ridge
 from threedfs.deform.samples import draw_anchors, draw_controls
 from threedfs.errors import UserError
 from threedfs.geometry.grid import cover_box, voxel_centres
-from threedfs.types import OrientedPoints, Plane
+from threedfs.types import Box, OrientedPoints, Plane
 
-GRID = cover_box(np.full(3, -0.5), np.full(3, 0.5), 50)
+GRID = cover_box(Box(np.eye(3), np.full(3, -0.5), np.full(3, 0.5)), 50)
 CLIP = 6 * GRID.spacing
 RADIUS = 0.3
 SEEN = np.ones(GRID.shape, np.uint8)
@@ -219,7 +219,7 @@ def test_points_of_a_cell_become_their_mean_by_trust():
     """Exact: cells start at the lowest point, along every axis."""
     xyz = np.array([[-0.1, 0.2, 0.3], [0.1, 0.2, 0.5], [0.4, 0.2, 0.3], [-0.1, 0.8, 0.3], [-0.1, 0.2, 0.9]])
     samples = SurfaceSamples(xyz, np.array([0.2, 0.6, -0.1, 0.4, 0.3]), np.array([0.2, 0.6, 0.9, 0.3, 0.5]))
-    cells = average_in_cells(samples, 0.5)
+    cells = average_in_cells(samples, GRID, 0.5 / GRID.spacing)
     np.testing.assert_allclose(cells.xyz, [[0.05, 0.2, 0.45], xyz[4], xyz[3], xyz[2]])
     np.testing.assert_allclose(cells.sdf, [0.5, 0.3, 0.4, -0.1])
     np.testing.assert_allclose(cells.trust, np.array([0.8, 0.5, 0.3, 0.9]) / 0.625)
@@ -231,7 +231,7 @@ def test_points_that_err_on_their_own_average_out():
     points = sphere_points(20000)
     points.xyz[:] *= 1 + np.random.default_rng(3).normal(0, 0.3 * GRID.spacing / RADIUS, (20000, 1)).astype(np.float32)
     samples = take(points, sdf)
-    cells = average_in_cells(samples, 1.5 * GRID.spacing)
+    cells = average_in_cells(samples, GRID, 1.5)
     rule = replace(RULE, surface_points=len(cells.xyz))
     drawn, averaged = (
         correct_zero_crossing(sdf, SEEN, GRID, some, rule, np.random.default_rng(0)) for some in (samples, cells)
@@ -259,7 +259,7 @@ def test_scattered_points_move_the_zero_level_less_the_less_they_are_believed():
     rule = replace(RULE, surface_points=50000)
     error = []
     for belief in (1.0, 0.05):
-        cells = average_in_cells(samples, 1.5 * GRID.spacing, belief)
+        cells = average_in_cells(samples, GRID, 1.5, belief)
         corrected = correct_zero_crossing(sdf, SEEN, GRID, cells, rule, np.random.default_rng(0))
         error.append(np.median(surface_error(corrected)))
     assert error[1] < 0.5 * error[0]
@@ -271,7 +271,7 @@ def test_reweighting_forgives_dense_points_off_the_surface():
     points = sphere_points(5000)
     points.xyz[:] *= 1 + np.random.default_rng(3).normal(0, 0.1 * GRID.spacing / RADIUS, (5000, 1)).astype(np.float32)
     points.xyz[:1000] *= 1 + 2 * GRID.spacing / RADIUS
-    cells = average_in_cells(take(points, sdf), 1.5 * GRID.spacing)
+    cells = average_in_cells(take(points, sdf), GRID, 1.5)
     rule = replace(RULE, surface_points=50000, reweightings=5)
     robust = correct_zero_crossing(sdf, SEEN, GRID, cells, rule, np.random.default_rng(0))
     assert np.median(surface_error(robust)) < 0.12

@@ -5,9 +5,11 @@ import numpy as np
 from threedfs.densify.crop import crop_points
 from threedfs.densify.normals import patch_normals
 from threedfs.densify.tracks import list_tracks
-from threedfs.types import Camera, OrientedPoints, Plane, SparsePoints
+from threedfs.types import Box, Camera, OrientedPoints, Plane, SparsePoints
 
 CAMERA = Camera(64, 48, 60.0, 62.0, 30.0, 25.0)
+
+UNIT = Box(np.eye(3), np.zeros(3), np.ones(3))
 
 
 def test_normals_are_those_of_the_plane_whose_inverse_depth_it_is():
@@ -43,7 +45,7 @@ def test_tracks_are_the_points_that_two_of_the_frames_see():
 def test_crop_keeps_what_stands_on_the_plane_inside_the_box_with_its_sightings():
     xyz = np.array([(0, 0, 0.5), (0, 0, 0.001), (2, 0, 0.5), (0.5, 0.5, 0.9)], np.float32)
     points = OrientedPoints(xyz, xyz, np.zeros((4, 3), np.uint8), np.array([0, 0, 1, 3, 3]), np.array([1, 2, 1, 0, 5]))
-    cropped = crop_points(points, np.zeros(3), np.ones(3), Plane(np.array([0.0, 0, 1]), 0.0), 0.01, min_sightings=2)
+    cropped = crop_points(points, UNIT, Plane(np.array([0.0, 0, 1]), 0.0), 0.01, min_sightings=2)
     np.testing.assert_array_equal(cropped.xyz, xyz[[0, 3]])
     assert cropped.seen_point.tolist() == [0, 0, 1, 1]
     assert cropped.seen_view.tolist() == [1, 2, 0, 5]
@@ -52,6 +54,6 @@ def test_crop_keeps_what_stands_on_the_plane_inside_the_box_with_its_sightings()
 def test_crop_leaves_out_points_of_few_sightings():
     xyz = np.full((2, 3), 0.5, np.float32)
     points = OrientedPoints(xyz, xyz, np.zeros((2, 3), np.uint8), np.array([0, 0, 1, 1, 1]), np.array([1, 2, 0, 3, 5]))
-    cropped = crop_points(points, np.zeros(3), np.ones(3), Plane(np.array([0.0, 0, 1]), 0.0), 0.01, min_sightings=3)
+    cropped = crop_points(points, UNIT, Plane(np.array([0.0, 0, 1]), 0.0), 0.01, min_sightings=3)
     assert cropped.seen_point.tolist() == [0, 0, 0]
     assert cropped.seen_view.tolist() == [0, 3, 5]

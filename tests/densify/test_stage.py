@@ -18,12 +18,12 @@ from threedfs.io.keyframes import write_keyframes
 from threedfs.io.points import write_points
 from threedfs.io.poses import Poses, write_poses
 from threedfs.io.schema import Schema
-from threedfs.io.volumes import Support, write_support
+from threedfs.io.volumes import write_support
 from threedfs.job import Job
 from threedfs.params.densify import DensifyParams
 from threedfs.progress import Progress
 from threedfs.stages import densify
-from threedfs.types import Keyframe, Plane, SparsePoints, View
+from threedfs.types import Box, Keyframe, Plane, SparsePoints, Support, View
 
 JOB = Job(Progress("test"), {"provenance": "test"})
 VIEWS = scenes.views()
@@ -66,7 +66,9 @@ def folder(tmp_path_factory):
         folder / "points.zarr.zip", SparsePoints(xyz, np.zeros((9, 3), np.uint8), np.zeros(9), *tracks), JOB.header
     )
     plane = Plane(np.array([0.0, 0.0, -1.0]), 1.5)
-    write_support(folder / "support.json", Support(plane, LOW, HIGH, {"plane_noise": 0.001}), JOB.header)
+    write_support(
+        folder / "support.json", Support(plane, Box(np.eye(3), LOW, HIGH), {"plane_noise": 0.001}), JOB.header
+    )
     for view in VIEWS:
         write_patches(folder, view, 1 / scenes.plane_depth(view), 0.0)
     return folder

@@ -1,5 +1,7 @@
 """Oracle, exact and property: ZNCC against loops, and the cost volume on a plane of known depth."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -98,6 +100,30 @@ def test_least_cost_lies_at_the_true_depth():
     nearest = np.abs(1 / candidates[:, None, None] - 1 / truth).argmin(0)
     inner = np.s_[12:-12, 12:-12]
     assert (np.abs(cost.argmin(0) - nearest)[inner] <= 1).mean() > 0.95
+
+
+def test_a_neighbour_of_another_shape_costs_the_same():
+    """Property: columns and rows taken off a neighbour whose part is seen; the map moves with its principal point."""
+    reference, neighbour = scenes.views()[:2]
+    images = scenes.grey_images()
+    camera = neighbour.camera
+    less = replace(camera, width=camera.width - 7, height=camera.height - 5, cx=camera.cx - 7, cy=camera.cy - 5)
+    cut = replace(neighbour, camera=less)
+    cost = {}
+    for view, image in ((neighbour, images[neighbour.name]), (cut, images[neighbour.name][5:, 7:])):
+        cost[image.shape] = compute_cost_volume(
+            reference,
+            images["0"],
+            [view],
+            lambda view, image=image: image,
+            space_candidates(0.9, 1.2, 4, "inverse"),
+            patch_radius=1,
+            variance_floor=1.0,
+            missing_cost=0.5,
+        )
+    whole, part = cost.values()
+    seen = part != 0.5
+    assert seen.mean() > 0.6 and np.abs(part - whole)[seen].max() < 5e-3
 
 
 def test_invalid_pixels_are_missing():

@@ -14,6 +14,7 @@ from threedfs.depth.zncc import describe_patches
 SETTINGS = dict(
     prior="rotation_invariant",
     iterations=12,
+    fine_iterations=1,
     photometric_weight=100.0,
     coupling=1.0,
     coupling_decay=0.06,
@@ -73,6 +74,7 @@ def test_second_order_priors_beat_the_first_on_a_slanted_blank_part(inputs):
     "change",
     [
         {"iterations": 4},
+        {"fine_iterations": 12},
         {"photometric_weight": 1.0},
         {"coupling": 0.01},
         {"coupling_decay": 0.01},

@@ -6,8 +6,7 @@ import sys
 from xml.etree import ElementTree
 
 from threedfs.evaluate.plots import plot_depth_experiment, plot_overlap
-from threedfs.evaluate.scores import Scores
-from threedfs.io.metrics import Metric
+from threedfs.evaluate.scores import Metric, Scores
 
 ROWS = (
     Metric("iou_mean", 0.5, "1", "toys", "mug", "fused_sdf"),
@@ -45,7 +44,7 @@ def test_nothing_is_drawn_of_nothing():
 
 def test_another_process_draws_the_same_bytes():
     code = (
-        "from threedfs.evaluate.plots import *\nfrom threedfs.io.metrics import Metric\n"
+        "from threedfs.evaluate.plots import *\nfrom threedfs.evaluate.scores import Metric\n"
         f"print(plot_overlap({SCORES!r}, 'toys') + plot_depth_experiment({SCORES!r}, 'toys', 100), end='')"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)

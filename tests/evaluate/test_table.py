@@ -7,8 +7,9 @@ from threedfs.errors import UserError
 from threedfs.evaluate.costs import cost_figures
 from threedfs.evaluate.depth_error import DepthPairs
 from threedfs.evaluate.figures import depth_figures, mask_figures
+from threedfs.evaluate.scores import Metric
 from threedfs.evaluate.summary import render_summary
-from threedfs.io.metrics import COLUMNS, Metric, read_metrics, write_metrics
+from threedfs.io.metrics import COLUMNS, read_metrics, write_metrics
 
 
 def test_a_table_survives_the_round_trip(tmp_path):

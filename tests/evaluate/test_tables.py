@@ -5,7 +5,7 @@ import pytest
 
 from threedfs.evaluate.experiment_tables import bin_errors, experiment_tables, group_experiments
 from threedfs.evaluate.paper_table import PRINTED, PRINTED_MEAN, PRINTED_MEDIAN, SEQUENCES
-from threedfs.evaluate.scores import Failure, Scores
+from threedfs.evaluate.scores import Failure, Metric, Scores
 from threedfs.evaluate.table import Table, render_markdown
 from threedfs.evaluate.tables import (
     cost_tables,
@@ -16,7 +16,6 @@ from threedfs.evaluate.tables import (
     unseen_tables,
 )
 from threedfs.evaluate.variant_tables import variant_tables
-from threedfs.io.metrics import Metric
 
 STATIC = Failure("books", "poses", "", "the camera hardly moves.")
 

@@ -9,11 +9,11 @@ from threedfs.fusion.hard_maximum import HardMaximum
 from threedfs.fusion.softmax import SoftMaximum
 from threedfs.fusion.weighted_average import WeightedAverage
 from threedfs.geometry.grid import cover_box, voxel_centres
-from threedfs.types import Camera, View, VoxelGrid
+from threedfs.types import Box, Camera, View, VoxelGrid
 
 FACING = View("a", Camera(81, 81, 100.0, 100.0, 40.0, 40.0), np.eye(4))
 SLAB = VoxelGrid(np.array([-0.2, -0.1, 0.7]), 0.02, (21, 11, 31))
-BOX = cover_box(np.array([-0.35, -0.35, 0.02]), np.array([0.35, 0.35, 0.6]), 50)
+BOX = cover_box(Box(np.eye(3), np.array([-0.35, -0.35, 0.02]), np.array([0.35, 0.35, 0.6])), 50)
 
 
 def ray_distance(depth, clip):

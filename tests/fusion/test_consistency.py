@@ -9,6 +9,7 @@ from scipy.ndimage import gaussian_filter
 from threedfs.fusion.consistency import ComparisonRule, check_consistency, rate_confidence
 from threedfs.fusion.softmax import SoftMaximum
 from threedfs.geometry.grid import cover_box, voxel_centres
+from threedfs.types import Box
 
 RULE = ComparisonRule(tolerance=0.02, max_views=32, witness_share=0.5)
 
@@ -74,7 +75,7 @@ def test_one_wrong_view_does_not_carve(table, exact):
     """Oracle: with one map too far by a fifth the plain soft maximum loses the sphere, the weighted one keeps it."""
     depths = [depth * (1.2 if rank == 3 else 1) for rank, depth in enumerate(exact)]
     agreements = check(table, depths)
-    grid = cover_box(np.array([-0.35, -0.35, 0.05]), np.array([0.35, 0.35, 0.6]), 50)
+    grid = cover_box(Box(np.eye(3), np.array([-0.35, -0.35, 0.05]), np.array([0.35, 0.35, 0.6])), 50)
     inside = np.linalg.norm(voxel_centres(grid) - table.centre, axis=-1) < table.radius
 
     def overlap(weighted):

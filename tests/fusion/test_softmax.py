@@ -8,7 +8,7 @@ from threedfs.fusion.fuse import limit_clip_distance
 from threedfs.fusion.softmax import SoftMaximum
 from threedfs.geometry.grid import cover_box, voxel_centres
 from threedfs.geometry.rigid import invert, look_at, make_transform
-from threedfs.types import Camera, View, VoxelGrid
+from threedfs.types import Box, Camera, View, VoxelGrid
 
 FACING = View("a", Camera(81, 81, 100.0, 100.0, 40.0, 40.0), np.eye(4))
 
@@ -46,7 +46,7 @@ def test_single_view_is_the_distance_along_the_ray():
     assert (seen == 1).all()
 
 
-TOP = cover_box(np.array([-0.3, -0.3, 0.1]), np.array([0.3, 0.3, 0.6]), 60)
+TOP = cover_box(Box(np.eye(3), np.array([-0.3, -0.3, 0.1]), np.array([0.3, 0.3, 0.6])), 60)
 
 
 def test_zero_level_of_a_view_from_above_is_exact(table):
@@ -108,7 +108,7 @@ def test_unseen_needs_no_neighbour():
 def test_moving_the_world_changes_nothing(table):
     """Property: a rigid motion by whole quarter turns maps the grid onto itself, and so the field."""
     turn = make_transform(np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]]), [0.3, -0.2, 0.7])
-    grid = cover_box(np.array([-0.4, -0.4, -0.1]), np.array([0.4, 0.4, 0.6]), 40)
+    grid = cover_box(Box(np.eye(3), np.array([-0.4, -0.4, -0.1]), np.array([0.4, 0.4, 0.6])), 40)
     corner = turn[:3, :3] @ (grid.origin + grid.spacing * np.array([0, grid.shape[1] - 1, 0])) + turn[:3, 3]
     turned = VoxelGrid(corner, grid.spacing, grid.shape)
     votes = [(view, table.depth(view)) for view in table.views[:3]]
@@ -121,7 +121,7 @@ def test_moving_the_world_changes_nothing(table):
 
 def test_threads_do_not_change_a_bit(table):
     """Exact: voxels are independent."""
-    grid = cover_box(np.array([-0.4, -0.4, -0.1]), np.array([0.4, 0.4, 0.6]), 40)
+    grid = cover_box(Box(np.eye(3), np.array([-0.4, -0.4, -0.1]), np.array([0.4, 0.4, 0.6])), 40)
     votes = [(view, table.depth(view)) for view in table.views[:4]]
     one, two = fuse(grid, votes, threads=1), fuse(grid, votes, threads=2)
     assert one[0].tobytes() == two[0].tobytes()
@@ -192,7 +192,7 @@ def test_view_looking_away_sees_nothing():
 
 def test_without_confidence_every_vote_counts_the_same(table):
     """Exact: plain votes are the paper's, whatever is set for those weighed by confidence."""
-    grid = cover_box(np.array([-0.4, -0.4, -0.1]), np.array([0.4, 0.4, 0.6]), 30)
+    grid = cover_box(Box(np.eye(3), np.array([-0.4, -0.4, -0.1]), np.array([0.4, 0.4, 0.6])), 30)
     votes = [(view, table.depth(view)) for view in table.views[:4]]
     sure = [(*vote, np.ones(vote[1].shape)) for vote in votes]
     plain = fuse(grid, votes)[0]

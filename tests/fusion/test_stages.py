@@ -20,9 +20,9 @@ from threedfs.params.consistency import ConsistencyParams
 from threedfs.params.fuse_object import FuseObjectParams
 from threedfs.params.fuse_scene import FuseSceneParams
 from threedfs.params.locate import LocateParams
-from threedfs.params.object import ObjectParams
+from threedfs.params.locate_object import LocateObjectParams
 from threedfs.progress import Progress
-from threedfs.stages import consistency, fuse_object, fuse_scene, locate
+from threedfs.stages import consistency, fuse_object, fuse_scene, locate, locate_object
 from threedfs.stages import object as object_stage
 from threedfs.types import Keyframe, SparsePoints
 
@@ -76,6 +76,7 @@ def run_all(folder, threads=1, point_deviation=0.05):
         points=folder / "points.zarr.zip",
         semidense=semidense,
         support=folder / "support.json",
+        clearance=LocateObjectParams().clearance,
         params=LocateParams(plane_candidates=500, point_deviation=point_deviation),
         job=job,
     )
@@ -88,19 +89,27 @@ def run_all(folder, threads=1, point_deviation=0.05):
         params=FuseObjectParams(longest_side=60),
         job=job,
     )
+    locate_object.run(
+        **at,
+        volume=folder / "object.zarr.zip",
+        support=folder / "support.json",
+        semidense=semidense,
+        located=folder / "located.zarr.zip",
+        field="fused_sdf",
+        params=LocateObjectParams(),
+        job=job,
+    )
     object_stage.run(
         **at,
         field=folder / "object.zarr.zip",
-        support=folder / "support.json",
+        located=folder / "located.zarr.zip",
         poses=folder / "poses.json",
         frames=folder / "frames.zarr.zip",
-        semidense=semidense,
         mesh=folder / "mesh.ply",
         volume=folder / "volume.zarr.zip",
         silhouettes=folder / "silhouettes.zarr.zip",
         masks=folder / "masks",
         method="fused_sdf",
-        params=ObjectParams(),
         job=job,
     )
 
@@ -118,9 +127,10 @@ def test_support_and_box(results, table):
     support = read_support(results / "support.json")
     assert np.degrees(np.arccos(support.plane.normal[2])) < 0.5
     assert abs(support.plane.offset) < 0.01  # a third of a scene voxel
-    assert (support.low < table.centre - table.radius).all()
-    assert (support.high > table.centre + table.radius).all()
-    assert (support.high - support.low).max() < 2 * 2 * table.radius
+    np.testing.assert_array_equal(support.box.axes[2], support.plane.normal)
+    assert (support.box.low < support.box.axes @ table.centre - table.radius).all()
+    assert (support.box.high > support.box.axes @ table.centre + table.radius).all()
+    assert support.box.longest < 2 * 2 * table.radius
     assert support.figures["thickness"] == pytest.approx(2 * table.radius, rel=0.2)
 
 
@@ -166,7 +176,7 @@ def test_bytes_do_not_depend_on_threads(results, table, tmp_path):
     lay_out(tmp_path, table)
     run_all(tmp_path, threads=2)
     made = [path.relative_to(tmp_path) for path in sorted(tmp_path.rglob("*")) if path.is_file()]
-    assert len(made) == 2 * len(table.views) + 4 + 6 + 1 + len(table.views)
+    assert len(made) == 2 * len(table.views) + 4 + 7 + 1 + len(table.views)
     for path in made:
         assert (tmp_path / path).read_bytes() == (results / path).read_bytes(), path
 

@@ -10,7 +10,7 @@ from threedfs.geometry.lens import Lens
 from threedfs.geometry.plane import fit_plane, propose_planes, score_planes
 from threedfs.geometry.projection_matrix import decompose_projection
 from threedfs.geometry.similarity import Similarity, align
-from threedfs.types import Camera, View
+from threedfs.types import Box, Camera, View
 
 ROUNDING = 1e-12
 """A few operations on numbers of order one, in float64."""
@@ -116,15 +116,45 @@ def test_moved_camera_sees_the_moved_scene_in_the_same_place(view, random):
 
 def test_grid_covers_its_box_from_face_to_face():
     low, high = np.array([0.0, 1, 2]), np.array([1.0, 1.5, 2.1])
-    cover = grid.cover_box(low, high, 10)
+    cover = grid.cover_box(Box(np.eye(3), low, high), 10)
     assert cover.shape == (10, 5, 1)
     assert cover.spacing == pytest.approx(0.1)
     faces = [(cover.axis(d)[0] - cover.spacing / 2, cover.axis(d)[-1] + cover.spacing / 2) for d in range(3)]
     assert np.allclose(faces, np.column_stack([low, high]))
 
 
-def test_voxel_centres_are_whole_indices():
-    cover = grid.cover_box(np.zeros(3), np.array([1.0, 0.7, 0.4]), 7)
+def test_a_box_aslant_is_covered_by_the_voxels_of_its_grid(random):
+    box = Box(rotation_of(random), np.array([-0.3, 0.2, 1.0]), np.array([0.7, 0.5, 1.2]))
+    cover = grid.cover_box(box, 20)
+    assert cover.shape == (20, 6, 4)
+    points = random.uniform(box.low, box.high, (1000, 3)) @ box.axes
+    assert box.contains(points).all() and grid.voxel_index(cover, points)[1].all()
+    assert box.contains(grid.voxel_centres(cover)).all()
+
+
+def test_box_aslant_contains_what_lies_between_its_faces(random):
+    box = Box(rotation_of(random), np.array([-0.3, 0.2, 1.0]), np.array([0.7, 0.5, 1.2]))
+    weights = random.dirichlet(np.ones(8), 500)
+    assert box.contains(weights @ box.corners()).all() and box.contains(box.centre)
+    outward = box.corners() - box.centre
+    assert not box.contains(box.centre + 1.001 * outward).any()
+    assert box.grow(0.01).contains(box.centre + 1.001 * outward).all()
+    assert not box.contains(np.full(3, np.nan))
+    assert box.longest == pytest.approx(1.0)
+
+
+def test_homogeneous_indices_lead_to_the_centres_of_voxels(random):
+    cover = grid.cover_box(Box(rotation_of(random), -np.ones(3), np.array([1.0, 0.7, 0.4])), 7)
+    indices = np.stack(np.indices(cover.shape), -1).reshape(-1, 3)
+    centres = grid.voxel_centres(cover).reshape(-1, 3)
+    for found in (rigid.apply(cover.world_from_voxel, indices), grid.world_from_index(cover, indices)):
+        assert np.abs(found - centres).max() < ROUNDING
+    assert np.abs(grid.voxel_places(cover, np.arange(len(centres))) - centres).max() < ROUNDING
+    assert np.abs(cover.axis(1)[3] - cover.axes[1] @ grid.voxel_centres(cover)[2, 3, 1]) < ROUNDING
+
+
+def test_voxel_centres_are_whole_indices(random):
+    cover = grid.cover_box(Box(rotation_of(random), np.zeros(3), np.array([1.0, 0.7, 0.4])), 7)
     centres = grid.voxel_centres(cover)
     assert centres.shape == (*cover.shape, 3)
     indices = np.stack(np.indices(cover.shape), -1)
@@ -134,7 +164,7 @@ def test_voxel_centres_are_whole_indices():
 
 
 def test_points_outside_the_grid_are_left_out():
-    cover = grid.cover_box(np.zeros(3), np.ones(3), 4)
+    cover = grid.cover_box(Box(np.eye(3), np.zeros(3), np.ones(3)), 4)
     found, kept = grid.voxel_index(cover, np.array([[0.01, 0.01, 0.99], [-0.01, 0.5, 0.5], [0.5, 1.01, 0.5]]))
     assert kept.tolist() == [True, False, False]
     assert found.tolist() == [[0, 0, 3]]

@@ -19,6 +19,7 @@ from threedfs.io import (
     features,
     frames,
     keyframes,
+    located,
     metrics,
     points,
     poses,
@@ -26,11 +27,13 @@ from threedfs.io import (
     superpixels,
     volumes,
 )
+from threedfs.locate.find import Located
 from threedfs.segment.superpixels import Superpixels
-from threedfs.types import Camera, Features, Keyframe, Plane, SparsePoints, View, VoxelGrid
+from threedfs.types import Box, Camera, Features, Keyframe, Plane, SparsePoints, Support, View, VoxelGrid
 
 HEADER = {"parameters": {"size": 3, "names": ["a", "b"]}, "provenance": "0123"}
 RANDOM = np.random.default_rng(5)
+ASLANT = look_at(np.array([0.1, 0.3, -2.0]), np.zeros(3), np.array([0.0, -1, 0]))[:3, :3]
 CAMERA = Camera(8, 6, 7.5, 7.25, 3.5, 2.5)
 
 
@@ -136,7 +139,7 @@ ARTIFACTS = [
     Artifact(
         "volume.zarr.zip",
         volumes.Volume(
-            VoxelGrid(np.array([0.5, -1, 2]), 0.1, (3, 4, 5)),
+            VoxelGrid(np.array([0.5, -1, 2]), 0.1, (3, 4, 5), ASLANT),
             RANDOM.random((3, 4, 5)).astype(np.float32),
             RANDOM.integers(0, 9, (3, 4, 5), np.uint8),
         ),
@@ -145,9 +148,22 @@ ARTIFACTS = [
     ),
     Artifact(
         "support.json",
-        volumes.Support(Plane(np.array([0.0, -1, 0]), 0.25), np.zeros(3), np.ones(3), {"inliers": 0.5}),
+        Support(Plane(np.array([0.0, -1, 0]), 0.25), Box(ASLANT, np.zeros(3), np.ones(3)), {"inliers": 0.5}),
         volumes.write_support,
         volumes.read_support,
+    ),
+    Artifact(
+        "located.zarr.zip",
+        Located(
+            VoxelGrid(np.array([0.5, -1.0, 2.0]), 0.25, (3, 4, 5), ASLANT),
+            Plane(np.array([0.0, -1, 0]), 0.25),
+            RANDOM.random((3, 4, 5)) > 0.5,
+            0.375,
+            12,
+            2,
+        ),
+        located.write_located,
+        located.read_located,
     ),
     Artifact(
         "silhouettes.zarr.zip",
@@ -170,7 +186,7 @@ ARTIFACTS = [
         "joint.zarr.zip",
         segmentation.Segmentation(
             {"000001": RANDOM.random((6, 8)) > 0.5, "000002": RANDOM.random((6, 8)) > 0.5},
-            VoxelGrid(np.array([0.5, -1.0, 2.0]), 0.25, (3, 4, 5)),
+            VoxelGrid(np.array([0.5, -1.0, 2.0]), 0.25, (3, 4, 5), ASLANT),
             RANDOM.integers(0, 3, (3, 4, 5), np.uint8),
             np.array([-1.5, -2.0]),
             np.array([40, 3], np.int64),

@@ -11,9 +11,9 @@ from threedfs.geometry.projection import backproject_map
 from threedfs.geometry.rigid import look_at
 from threedfs.object.extract import enclosed_volume, extract_surface
 from threedfs.object.silhouettes import draw_silhouette, draw_source_silhouette, rasterise
-from threedfs.types import Camera, Mesh, View
+from threedfs.types import Box, Camera, Mesh, View
 
-GRID = cover_box(np.array([-1.0, -1, -1]), np.array([1.0, 1, 1]), 50)
+GRID = cover_box(Box(np.eye(3), np.array([-1.0, -1, -1]), np.array([1.0, 1, 1])), 50)
 CENTRE = np.array([0.1, -0.05, 0.02])
 RADIUS = 0.6
 
@@ -70,7 +70,7 @@ def test_any_field_gives_a_closed_mesh(values):
     """Property: random fields, all ambiguous cells, ties and zeros, have exactly one face on each side of an edge."""
     for seed in range(10):
         field = np.random.default_rng(seed).choice(values, (12, 12, 12)).astype(np.float32)
-        mesh = extract_surface(field, cover_box(np.zeros(3), np.ones(3), 12))
+        mesh = extract_surface(field, cover_box(Box(np.eye(3), np.zeros(3), np.ones(3)), 12))
         directed = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]])
         edges, uses = np.unique(directed, axis=0, return_counts=True)
         assert (uses == 1).all()

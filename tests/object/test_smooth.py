@@ -9,13 +9,13 @@ from threedfs.evaluate.mesh_error import is_closed
 from threedfs.geometry.grid import cover_box, voxel_centres
 from threedfs.object.extract import enclosed_volume, extract_surface
 from threedfs.object.smooth import smooth_mesh
-from threedfs.types import Mesh
+from threedfs.types import Box, Mesh
 
 
 @pytest.fixture(scope="module")
 def ball() -> Mesh:
     """A ball of radius 0.6."""
-    grid = cover_box(-np.ones(3), np.ones(3), 40)
+    grid = cover_box(Box(np.eye(3), -np.ones(3), np.ones(3)), 40)
     return extract_surface((np.linalg.norm(voxel_centres(grid), axis=-1) - 0.6).astype(np.float32), grid)
 
 
@@ -30,7 +30,7 @@ def test_noise_on_a_ball_is_smoothed_away(ball):
 
 
 def test_sharp_edges_stay_where_contrast_is_low():
-    grid = cover_box(-np.ones(3), np.ones(3), 30)
+    grid = cover_box(Box(np.eye(3), -np.ones(3), np.ones(3)), 30)
     cube = extract_surface((np.abs(voxel_centres(grid)).max(axis=-1) - 0.6).astype(np.float32), grid)
     kept, blurred = smooth_mesh(cube, 10, 0.02), smooth_mesh(cube, 10, 10.0)
     corner = [np.linalg.norm(mesh.vertices, axis=1).max() for mesh in (cube, kept, blurred)]

@@ -13,8 +13,8 @@ from threedfs.errors import UserError
 from threedfs.geometry.lens import Lens
 from threedfs.geometry.projection_matrix import decompose_projection
 from threedfs.geometry.rigid import invert, look_at
-from threedfs.io.given_cameras import GivenCamera, read_given_cameras
-from threedfs.poses.given import find_cameras, fit_lens, shared_distortion
+from threedfs.io.given_cameras import read_given_cameras
+from threedfs.poses.given import GivenCamera, find_cameras, fit_lens, shared_distortion
 from threedfs.types import Camera
 
 LENS = Lens(Camera(640, 480, 610.0, 600.0, 320.25, 238.5), 0.05, -0.01)

@@ -8,9 +8,9 @@ import trimesh
 
 from threedfs.errors import UserError
 from threedfs.io.meshes import read_mesh, write_mesh
-from threedfs.io.volumes import Support, write_support
+from threedfs.io.volumes import write_support
 from threedfs.run_end.export import export
-from threedfs.types import Mesh, Plane
+from threedfs.types import Box, Mesh, Plane, Support
 
 
 @pytest.fixture
@@ -19,7 +19,11 @@ def results(tmp_path):
     ball = trimesh.creation.icosphere(subdivisions=2)
     write_mesh(tmp_path / "11_object/sdf_2d3d_voxel/mesh.ply", Mesh(ball.vertices, ball.faces))
     plane = Plane(np.array([0.6, 0.0, 0.8]), 1.0)
-    write_support(tmp_path / "07_fusion/support.json", Support(plane, -np.ones(3), np.ones(3), {}), {"stage": "test"})
+    write_support(
+        tmp_path / "07_fusion/support.json",
+        Support(plane, Box(np.eye(3), -np.ones(3), np.ones(3)), {}),
+        {"stage": "test"},
+    )
     return tmp_path
 
 

@@ -65,3 +65,23 @@ def test_actions_are_those_that_the_logs_end_with(results, tmp_path):
     record.write_text(json.dumps({"stage": "frames"}))
     assert read_actions(results / "can", tmp_path / "store") == [{"stage": "frames"}]
     assert read_actions(results / "mug", tmp_path / "store") == []
+
+
+def test_log_of_a_job_on_many_keyframes_names_each_fault_and_each_action(tmp_path):
+    log = tmp_path / "mug/logs/cues.log"
+    log.parent.mkdir(parents=True)
+    actions = "action abcd\naction abce\n"
+    log.write_text(
+        actions + "threedfs: edges of mug IMG 1 and 2 more: no: edge.\nthreedfs: cues of mug IMG 4: killed.\n"
+    )
+    assert find_failures(tmp_path, 0) == [
+        Failure("mug", "edges", "IMG 1 and 2 more", "no: edge."),
+        Failure("mug", "cues", "IMG 4", "killed."),
+    ]
+    for key in ("abcd", "abce"):
+        record = tmp_path / f"store/actions/ab/{key}.json"
+        record.parent.mkdir(parents=True, exist_ok=True)
+        record.write_text(json.dumps({"stage": key}))
+    assert read_actions(tmp_path / "mug", tmp_path / "store") == [{"stage": "abcd"}, {"stage": "abce"}]
+    log.write_text(actions)
+    assert find_failures(tmp_path, 0) == []

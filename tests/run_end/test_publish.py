@@ -3,7 +3,8 @@
 import pytest
 
 from threedfs.errors import UserError
-from threedfs.io.metrics import Metric, read_metrics, write_metrics
+from threedfs.evaluate.scores import Metric
+from threedfs.io.metrics import read_metrics, write_metrics
 from threedfs.run_end.publish import BEGIN, END, publish
 
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from threedfs.geometry.grid import cover_box, voxel_centres
-from threedfs.geometry.projection import backproject, pixel_grid
+from threedfs.geometry.projection import backproject, backproject_map, pixel_grid
+from threedfs.locate.find import find_object
 from threedfs.segment.gather import Scene
 from threedfs.segment.superpixels import split_image
-from threedfs.types import Camera, Plane, View
+from threedfs.types import Box, Camera, Plane, Support, View
 
 CAMERA = Camera(120, 90, 130.0, 130.0, 59.5, 44.5)
 RADIUS, CLIP = 0.2, 0.08
@@ -49,8 +50,8 @@ def make_scene(views: int = 8, shrink: float = 0.0, size: int = 40) -> tuple[Sce
     """Return the scene, its field that of a ball smaller by `shrink`, and the true masks."""
     rng = np.random.default_rng(0)
     looks = [look(angle) for angle in np.linspace(0, 2 * np.pi, views, endpoint=False)]
-    low, high = np.array([-0.32, -0.32, -0.1]), np.array([0.32, 0.32, 0.5])
-    grid = cover_box(low, high, size)
+    box = Box(np.eye(3), np.array([-0.32, -0.32, -0.1]), np.array([0.32, 0.32, 0.5]))
+    grid = cover_box(box, size)
     centres = voxel_centres(grid)
     ball = np.linalg.norm(centres - CENTRE, axis=-1) - (RADIUS - shrink)
     sdf = np.clip(np.minimum(ball, centres[..., 2]) / CLIP, -1, 1).astype(np.float32)
@@ -58,18 +59,23 @@ def make_scene(views: int = 8, shrink: float = 0.0, size: int = 40) -> tuple[Sce
     valid = np.ones(CAMERA.shape, bool)
     blank = np.zeros(CAMERA.shape, np.float32)
     scene = Scene(
-        grid,
+        find_object(
+            grid,
+            sdf,
+            np.full(grid.shape, views, np.uint8),
+            Support(PLANE, box, {}),
+            looks,
+            [backproject_map(view, shots[view.name][1]).reshape(-1, 3) for view in looks],
+            least_height=grid.spacing,
+            reach=0.2,
+        ),
         sdf,
-        np.full(grid.shape, views, np.uint8),
-        PLANE,
-        low,
-        high,
-        clearance=grid.spacing,
+        box,
         views={view.name: view for view in looks},
         images={name: image for name, (image, _, _) in shots.items()},
         valid=valid,
         superpixels={
-            name: split_image(image, valid, blank, count=500, compactness=10.0) for name, (image, _, _) in shots.items()
+            name: split_image(image, valid, blank, area=21.6, compactness=10.0) for name, (image, _, _) in shots.items()
         },
         depth={name: depth for name, (_, depth, _) in shots.items()},
         confidence={name: np.ones(CAMERA.shape, np.float32) for name in shots},

@@ -15,7 +15,7 @@ from threedfs.segment.outline import draw_voxels, grow_voxels, largest_piece, su
 from threedfs.segment.pairwise import link_voxels, superpixel_weights, voxel_pairs
 from threedfs.segment.superpixels import Superpixels, split_image
 from threedfs.segment.unaries import carve_unary, scene_unary, sdf_unary, silhouette_unary, soften_silhouette
-from threedfs.types import Camera, View
+from threedfs.types import Box, Camera, View
 
 CAMERA = Camera(64, 48, 60.0, 60.0, 31.5, 23.5)
 
@@ -33,7 +33,7 @@ def halves() -> Superpixels:
     image[:, 4:] = 255
     strength = np.zeros((6, 8), np.float32)
     strength[:, 3:5] = 0.5
-    return split_image(image, np.ones((6, 8), bool), strength, count=2, compactness=0.1)
+    return split_image(image, np.ones((6, 8), bool), strength, area=24.0, compactness=0.1)
 
 
 def test_superpixels_are_numbered_and_know_their_boundaries():
@@ -48,7 +48,7 @@ def test_superpixels_leave_out_what_is_not_valid():
     image = rng.integers(0, 255, (40, 50, 3)).astype(np.uint8)
     valid = np.ones((40, 50), bool)
     valid[:, :7] = False
-    found = split_image(image, valid, np.zeros((40, 50), np.float32), count=30, compactness=10)
+    found = split_image(image, valid, np.zeros((40, 50), np.float32), area=67.0, compactness=10)
     assert (found.index[~valid] == -1).all() and (found.index[valid] >= 0).all()
     assert found.sizes.sum() == valid.sum() and (found.sizes > 0).all()
     assert not found.paint(np.ones(found.count, bool))[~valid].any()
@@ -133,7 +133,7 @@ def test_voxel_pairs_have_an_open_end_each_once():
 
 def test_links_count_shares_of_superpixels():
     found = halves()
-    grid = cover_box(np.zeros(3), np.ones(3), 2)
+    grid = cover_box(Box(np.eye(3), np.zeros(3), np.ones(3)), 2)
     points = np.array([[0.2, 0.2, 0.2], [0.3, 0.1, 0.2], [0.8, 0.8, 0.8], [3.0, 0.0, 0.0]])
     pairs, share = link_voxels(found, points, np.array([0, 1, 2, 3]), np.array([0, 1, 6, 7]), grid)
     assert pairs.tolist() == [[0, 0], [1, 7]]
@@ -141,7 +141,7 @@ def test_links_count_shares_of_superpixels():
 
 
 def test_silhouette_of_voxels_is_that_of_the_ball_they_fill():
-    grid = cover_box(-np.ones(3), np.ones(3), 60)
+    grid = cover_box(Box(np.eye(3), -np.ones(3), np.ones(3)), 60)
     ball = np.linalg.norm(voxel_centres(grid), axis=-1) < 0.7
     view = view_from(4.0)
     mask = draw_voxels(ball, grid, {"front": view})["front"]

@@ -2,13 +2,23 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from threedfs.geometry.projection import backproject, project
 from threedfs.params.semidense import SemidenseParams
 from threedfs.semidense.gradient import find_textured, image_gradient, to_grey
-from threedfs.semidense.observe import FOUND, NOT_SEARCHED, TEMPLATE_MARGIN, SearchRule, search_line
+from threedfs.semidense.observe import (
+    FOUND,
+    NOT_SEARCHED,
+    TEMPLATE_MARGIN,
+    WORK,
+    SearchRule,
+    _compare,
+    search_line,
+)
 from threedfs.semidense.pair import relate
 
 PARAMS = SemidenseParams()
@@ -22,7 +32,9 @@ def search(scene, u, v, low=BOUNDS[0], high=BOUNDS[1], neighbour=0, grey=None, o
     other = to_grey(image) if other is None else other
     other_valid = np.ones(other.shape, bool) if other_valid is None else other_valid
     pair = relate(scene.keyframe.view, view)
-    return search_line(grey, *image_gradient(grey), other, other_valid, u, v, low, high, BOUNDS, pair, rule)
+    other = np.where(other_valid, other, np.float32(np.nan))
+    work = np.empty((2, WORK))
+    return search_line(grey, *image_gradient(grey), other, u, v, low, high, BOUNDS, pair, rule, work)
 
 
 def search_many(scene, **given):
@@ -31,6 +43,20 @@ def search_many(scene, **given):
     results = [search(scene, u, v, **given) for u, v in zip(columns, rows, strict=True)]
     outcome, found, variance = (np.array(part) for part in zip(*results, strict=True))
     return outcome, found, variance, 1 / scene.depth[rows, columns]
+
+
+def test_differences_are_those_of_windows():
+    """Oracle: each window less its mean against the template; windows with an unknown sample count as infinite."""
+    rng = np.random.default_rng(0)
+    samples, template = rng.uniform(0, 255, 40), rng.uniform(-90, 90, 5)
+    samples[17] = np.nan
+    template -= template.mean()
+    windows = np.lib.stride_tricks.sliding_window_view(samples, 5)
+    expected = ((windows - windows.mean(axis=1, keepdims=True) - template) ** 2).sum(axis=1)
+    found = np.empty(36)
+    seen, best = _compare(samples, tuple(template), found)
+    np.testing.assert_allclose(found, np.where(np.isnan(expected), np.inf, expected), rtol=1e-9)
+    assert seen == 31 and best == np.nanargmin(expected)
 
 
 def test_pair_geometry_agrees_with_projection(make_scene):
@@ -60,6 +86,24 @@ def test_found_depth_is_true(make_scene, neighbour_focal):
     assert np.median(deviation) < 0.5
     # A single search over the whole range meets false matches, which only the other neighbours can tell.
     assert np.mean(deviation > 2) < 0.1
+
+
+def test_a_neighbour_of_another_shape_finds_the_same(make_scene):
+    """Property: columns and rows taken off a neighbour; its camera moves along, and what is found in both is the same.
+
+    But where the true place was taken off, and another one passes for it.
+    """
+    scene = make_scene()
+    view, image = scene.neighbours[0]
+    camera = view.camera
+    less = replace(camera, width=camera.width - 30, height=camera.height - 20, cx=camera.cx - 30, cy=camera.cy - 20)
+    neighbours = (replace(view, camera=less), *scene.keyframe.neighbours[1:])
+    images = {**scene.images, view.name: np.ascontiguousarray(image[20:, 30:])}
+    cut = replace(scene, keyframe=replace(scene.keyframe, neighbours=neighbours), images=images)
+    (outcome, whole, *_), (seen, part, *_) = search_many(scene), search_many(cut)
+    both = (outcome == FOUND) & (seen == FOUND)
+    assert both.sum() > 0.6 * (outcome == FOUND).sum()
+    assert np.isclose(part[both], whole[both], rtol=1e-6).mean() > 0.99
 
 
 def test_exposure_does_not_matter(make_scene):

@@ -1,5 +1,7 @@
 """Exact and property tests of patch-match stereo on a slanted plane, and what it refuses to say."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import scenes
@@ -69,6 +71,46 @@ def test_missing_pixels_are_left_alone():
     found = match(images)
     assert np.isnan(found.inverse_depth[:, :23]).all()
     assert (found.cost[10:-10, 40:-10] < 0.05).mean() > 0.8
+
+
+def test_neighbours_of_other_shapes_find_the_same():
+    """Exact: neighbours cut to parts of different shapes; the plane is found as in the whole images."""
+    images = scenes.grey_images()
+    reference, *neighbours = scenes.views()
+    cut = [cut_view(view, images[view.name], 3 * n, 2 * n) for n, view in enumerate(neighbours)]
+    assert len({image.shape for _, image in cut} | {images[reference.name].shape}) == len(neighbours)
+    nothing, everything = np.full(scenes.CAMERA.shape, np.nan), np.ones(scenes.CAMERA.shape, bool)
+    found = match_patches(
+        reference,
+        images[reference.name],
+        [view for view, _ in cut],
+        [image for _, image in cut],
+        nothing,
+        everything,
+        near=0.4,
+        far=2.5,
+        rule=RULE,
+        levels=2,
+        rounds=4,
+        seed=0,
+    )
+    truth = 1 / scenes.plane_depth(reference)
+    sure = found.cost < 0.02
+    assert sure.mean() > 0.5
+    assert np.median(np.abs(found.inverse_depth / truth - 1)[sure]) < 0.003
+
+
+def cut_view(view, image, left, top):
+    """Take columns off the left, rows off the top, and half as many off the other sides."""
+    right, bottom = image.shape[1] - left // 2, image.shape[0] - top // 2
+    camera = replace(
+        view.camera,
+        width=right - left,
+        height=bottom - top,
+        cx=view.camera.cx - left,
+        cy=view.camera.cy - top,
+    )
+    return replace(view, camera=camera), np.ascontiguousarray(image[top:bottom, left:right])
 
 
 def test_only_wanted_pixels_are_matched():

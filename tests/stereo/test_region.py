@@ -5,7 +5,7 @@ import scenes
 
 from threedfs.geometry.projection import backproject_map
 from threedfs.stereo.region import mask_box
-from threedfs.types import View
+from threedfs.types import Box, View
 
 
 def meets_box(view: View, low: np.ndarray, high: np.ndarray) -> np.ndarray:
@@ -23,9 +23,9 @@ def test_pixels_whose_rays_meet_the_box():
     for view in scenes.views():
         expected = meets_box(view, low, high)
         assert 0.05 < expected.mean() < 0.5
-        np.testing.assert_array_equal(mask_box(view, low, high), expected)
+        np.testing.assert_array_equal(mask_box(view, Box(np.eye(3), low, high)), expected)
 
 
 def test_a_box_around_the_camera_is_seen_everywhere():
     """Property: nothing is left out where the outline is not known."""
-    assert mask_box(scenes.views()[0], np.full(3, -1.0), np.ones(3)).all()
+    assert mask_box(scenes.views()[0], Box(np.eye(3), np.full(3, -1.0), np.ones(3))).all()

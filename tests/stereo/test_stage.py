@@ -8,14 +8,14 @@ from threedfs.errors import UserError
 from threedfs.io.depth_maps import Semidense, read_stereo, write_semidense, write_stereo
 from threedfs.io.frames import Frame, write_frames
 from threedfs.io.keyframes import write_keyframes
-from threedfs.io.volumes import Support, write_support
+from threedfs.io.volumes import write_support
 from threedfs.job import Job
 from threedfs.params.stereo import StereoParams
 from threedfs.params.stereo_check import StereoCheckParams
 from threedfs.progress import Progress
 from threedfs.stages import stereo, stereo_check
 from threedfs.stereo.region import mask_box
-from threedfs.types import Keyframe, Plane
+from threedfs.types import Box, Keyframe, Plane, Support
 
 JOB = Job(Progress("test"), {"provenance": "test"})
 
@@ -89,7 +89,9 @@ def test_around_a_place_only_its_pixels_are_matched(matched, side):
     """Exact: the box says where there are patches, and where none."""
     low, high = np.array([-side, -0.1, 0.9]), np.array([side, 0.15, 1.1])
     plane = Plane(np.array([0.0, 0.0, -1.0]), 1.5)
-    write_support(matched / "support.json", Support(plane, low, high, {"plane_noise": 0.001}), JOB.header)
+    write_support(
+        matched / "support.json", Support(plane, Box(np.eye(3), low, high), {"plane_noise": 0.001}), JOB.header
+    )
     stereo.run(
         undistorted=matched / "frames.zarr.zip",
         keyframes=matched / "keyframes.json",
@@ -101,7 +103,7 @@ def test_around_a_place_only_its_pixels_are_matched(matched, side):
         job=JOB,
     )
     found = np.isfinite(read_stereo(matched / "around.zarr.zip").inverse_depth)
-    wanted = mask_box(scenes.views()[0], low, high)
+    wanted = mask_box(scenes.views()[0], Box(np.eye(3), low, high))
     assert 0.1 < wanted.mean() < 0.9
     assert not found[~wanted].any() and found[wanted].mean() > 0.8
 

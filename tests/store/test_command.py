@@ -6,7 +6,6 @@ import io
 
 import pytest
 
-from threedfs.store import command
 from threedfs.store.command import Tee, run_job
 
 REFUSING = """
@@ -25,15 +24,14 @@ def log(tmp_path):
 
 
 @pytest.fixture
-def job(toolbox, tmp_path, log, monkeypatch):
+def job(toolbox, tmp_path, log):
     """Run the stage `join` of the toolbox as a job; return its log."""
-    perform = command.perform
-    monkeypatch.setattr(command, "perform", lambda *given, **options: perform(*given, package="toolbox", **options))
     (tmp_path / "a").write_text("one")
 
     def work(wildcards, labels=None):
         inputs, outputs, store = {"parts": tmp_path / "a"}, {"whole": tmp_path / "whole"}, tmp_path / "store"
-        run_job("join", inputs, outputs, {}, wildcards, labels or {}, store=store, log=log, threads=1, seed=0)
+        options = {"store": store, "log": log, "threads": 1, "seed": 0, "package": "toolbox"}
+        run_job("join", inputs, outputs, {}, wildcards, labels or {}, **options)
         return log.read_text()
 
     return work

@@ -6,10 +6,11 @@ PROGRAM = """
 import io
 from pathlib import Path
 from threedfs.progress import Progress
+from threedfs.store.action import Task
 from threedfs.store.perform import perform
 folder = Path({folder!r})
-perform("join", {{"parts": folder / "a"}}, {{"whole": folder / "whole"}}, {{}}, {{}}, folder / "store",
-        progress=Progress("join", io.StringIO()), package="toolbox")
+task = Task("join", {{"parts": folder / "a"}}, {{"whole": folder / "whole"}}, package="toolbox")
+perform(task, folder / "store", progress=Progress("join", io.StringIO()))
 print((folder / "whole").read_text())
 """
 STAGE = '''"""A stage that computes with a kernel."""

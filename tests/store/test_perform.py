@@ -15,16 +15,18 @@ import pytest
 
 from threedfs.errors import UserError
 from threedfs.progress import Progress
+from threedfs.store.action import Task
 from threedfs.store.perform import perform
 
 PROGRAM = """
 import io
 from pathlib import Path
 from threedfs.progress import Progress
+from threedfs.store.action import Task
 from threedfs.store.perform import perform
 folder = Path({folder!r})
-print(perform("join", {{"parts": folder / "a"}}, {{"whole": folder / {name!r}}}, {{}}, {{}}, folder / "store",
-              progress=Progress("join", io.StringIO()), package="toolbox").hit)
+task = Task("join", {{"parts": folder / "a"}}, {{"whole": folder / {name!r}}}, package="toolbox")
+print(perform(task, folder / "store", progress=Progress("join", io.StringIO())).hit)
 assert {numpy} or "numpy" not in __import__("sys").modules
 """
 
@@ -33,14 +35,11 @@ assert {numpy} or "numpy" not in __import__("sys").modules
 def join(toolbox, tmp_path):
     """Perform the stage on given inputs; files are made from their text."""
 
-    def work(parts, name="whole", wildcards=None, **options):
-        options = {"store": tmp_path / "store", "package": "toolbox", **options}
-        store = options.pop("store")
-        target = tmp_path / name
-        progress = Progress("join", options.pop("log", io.StringIO()))
-        return perform(
-            "join", {"parts": parts}, {"whole": target}, {}, wildcards or {}, store, progress=progress, **options
-        )
+    def work(parts, name="whole", wildcards=None, seed=0, threads=1, log=None):
+        outputs, wildcards = {"whole": tmp_path / name}, wildcards or {}
+        task = Task("join", {"parts": parts}, outputs, wildcards=wildcards, seed=seed, package="toolbox")
+        progress = Progress("join", log or io.StringIO())
+        return perform(task, tmp_path / "store", progress=progress, threads=threads)
 
     return work
 
@@ -210,8 +209,8 @@ def test_output_folder_comes_back_file_by_file(toolbox, part, tmp_path):
         (tmp_path / "masks").mkdir()
         (tmp_path / "masks" / "stale.png").write_text("old")
         inputs, outputs = {"parts": part}, {"masks": tmp_path / "masks"}
-        progress = Progress("split", io.StringIO())
-        outcome = perform("split", inputs, outputs, {}, {}, tmp_path / "store", progress=progress, package="toolbox")
+        task = Task("split", inputs, outputs, package="toolbox")
+        outcome = perform(task, tmp_path / "store", progress=Progress("split", io.StringIO()))
         assert outcome.hit is hit
         found = {path.relative_to(tmp_path / "masks").as_posix() for path in (tmp_path / "masks").rglob("*.png")}
         assert found == {"a.png", "deep/b.png"}

@@ -12,6 +12,7 @@ import pytest
 
 from threedfs.params.document import FILES
 from threedfs.params.schema import declared_stages
+from threedfs.store.arguments import read_arguments
 
 ROOT = Path(__file__).resolve().parents[2]
 BIN = Path(sys.executable).parent
@@ -31,18 +32,19 @@ SIGNATURES = {
     "depth": ("undistorted keyframes semidense edges stereo", "depth", "keyframe"),
     "consistency": ("keyframes depth", "consistency", ""),
     "fuse_scene": ("keyframes points depth consistency", "scene", ""),
-    "locate": ("scene keyframes points semidense", "support", ""),
+    "locate": ("scene keyframes points semidense", "support", "clearance"),
+    "locate_object": ("volume support keyframes semidense", "located", "field"),
     "fuse_object": ("keyframes depth consistency support", "volume", ""),
     "fuse_baseline": ("keyframes depth support", "volume", "fusion"),
     "densify": ("undistorted keyframes poses points support stereo", "cloud", "cuda"),
     "deform": ("field support cloud", "volume", "clearance noise_clearance"),
     "superpixels": ("undistorted keyframes edges", "superpixels", "keyframe"),
-    "segment": ("field support keyframes undistorted superpixels semidense depth consistency", "labels", "cut"),
+    "segment": ("field located support keyframes undistorted superpixels semidense depth consistency", "labels", "cut"),
     "volumetric_cut": ("support keyframes undistorted semidense", "labels", ""),
     "cut_object": ("labels field support keyframes poses undistorted", "mesh silhouettes masks", "method"),
     "pixel_masks": ("labels keyframes poses frames", "silhouettes masks", "method"),
     "poisson": ("cloud support keyframes poses frames", "mesh silhouettes masks", ""),
-    "object": ("field support keyframes poses frames semidense", "mesh volume silhouettes masks", "method"),
+    "object": ("field located keyframes poses frames", "mesh volume silhouettes masks", "method"),
     "evaluate_reconstruction": (
         "poses keyframes depth frames cameras_truth mesh_truth depth_truth",
         "metrics",
@@ -64,6 +66,8 @@ SIGNATURES = {
 """Inputs, outputs and wildcards of each stage: the contract between rules and stages."""
 
 TEMPLATE = '''"""Stand-in for a stage."""
+
+from pathlib import Path
 
 from threedfs.stages.stub import write
 
@@ -176,11 +180,13 @@ def write_stub_stages(package: Path, with_params: set[str]) -> None:
         if stage == "collect":
             continue
         inputs, outputs, wildcards = (text.split() for text in names)
+        real = read_arguments(f"threedfs.stages.{stage}")  # which of them are lists of files
         params = ["params"] if stage in with_params else []
         text = TEMPLATE.format(
             stage=stage,
             imports=f"import threedfs.params.{stage}\n\n" if params else "",
-            arguments="*, " + ", ".join([*inputs, *outputs, *wildcards, *params, "job"]),
+            arguments="*, "
+            + ", ".join(_annotate(name, real) for name in [*inputs, *outputs, *wildcards, *params, "job"]),
             inputs=_mapping(inputs),
             outputs=_mapping(outputs),
             names=_mapping(wildcards),
@@ -188,6 +194,10 @@ def write_stub_stages(package: Path, with_params: set[str]) -> None:
         )
         (package / "stages" / f"{stage}.py").write_text(text)
     shutil.copy(Path(__file__).with_name("stub.py"), package / "stages" / "stub.py")
+
+
+def _annotate(name: str, real: dict[str, str]) -> str:
+    return f"{name}: {real[name]}" if "Path" in real.get(name, "") else name
 
 
 def _mapping(names: list[str]) -> str:

@@ -13,6 +13,7 @@ TABLETOP, BLOWTORCH = {"pixels": 640 * 480, "keyframes": 20}, {"pixels": 640 * 4
         ("fuse_scene", {}, 402),
         ("fuse_object", {}, 382),
         ("locate", {}, 291),
+        ("locate_object", {}, 304),
         ("deform", {"unknowns": 4000}, 404),
         ("object", {}, 459),
         ("cut_object", {}, 1155),

@@ -17,25 +17,26 @@ import pytest
 from threedfs.store.files import remove_abandoned
 
 RULES = (
-    "render calibrate frames features poses undistort keyframes semidense edges depth consistency fuse_scene locate "
-    "fuse_object object evaluate_reconstruction evaluate collect all"
+    "render calibrate frames features poses undistort keyframes cues depth consistency fuse_scene locate "
+    "fuse_object locate_object object evaluate_reconstruction evaluate collect all"
 ).split()
 FILMED = ("video.mp4", "cameras.json", "mesh.ply")
 
 
 def jobs_done(output: str) -> Counter:
-    """Count the jobs that computed, by stage."""
+    """Count the jobs, and of those on keyframes the keyframes, that computed, by rule."""
     return Counter(re.findall(r"^(\w+) of .*: done in", output, re.MULTILINE))
 
 
 def records(results, sequence):
     """Read the action records that a sequence's logs name."""
-    keys = (log.read_text().split()[-1] for log in (results / sequence / "logs").rglob("*.log"))
+    logs = (log.read_text() for log in (results / sequence / "logs").rglob("*.log"))
+    keys = (key for log in logs for key in re.findall(r"^action (\w+)$", log, re.MULTILINE))
     return [json.loads((results / ".store/actions" / key[:2] / f"{key}.json").read_text()) for key in keys]
 
 
 def jobs_taken(output: str) -> Counter:
-    """Count the jobs that the store answered, by stage."""
+    """Count those that the store answered."""
     return Counter(re.findall(r"^(\w+) of .*: taken from the store in", output, re.MULTILINE))
 
 
@@ -46,8 +47,8 @@ def test_lists_every_rule(project):
 
 def test_first_run_does_every_job_and_prints_the_summary(first_run):
     project, output = first_run
-    once = set(RULES) - {"render", "calibrate", "all", "semidense", "edges", "depth"}
-    assert jobs_done(output) == Counter({**dict.fromkeys(once, 1), "semidense": 2, "edges": 2, "depth": 2})
+    once = set(RULES) - {"render", "calibrate", "all", "cues", "depth"}
+    assert jobs_done(output) == Counter({**dict.fromkeys(once, 1), "cues": 2, "depth": 2})
     assert re.search(r"sample fused_sdf +0.500", output)
     assert (project.folder / "results/metrics.csv").is_file()
 
@@ -71,11 +72,18 @@ def test_changed_parameter_reruns_what_follows_and_flipped_back_nothing(finished
     (finished.folder / "other.yaml").write_text("depth: {iterations: 7}\n")
     done = jobs_done(finished.run("--configfile", "other.yaml"))
     assert done["depth"] == 2
-    fused = {"consistency", "fuse_scene", "locate", "fuse_object", "object"}
+    fused = {"consistency", "fuse_scene", "locate", "fuse_object", "locate_object", "object"}
     assert set(done) == {"depth", *fused, "evaluate_reconstruction", "evaluate"}
     output = finished.run()
     assert jobs_done(output) == Counter()
     assert jobs_taken(output)["depth"] == 2
+
+
+def test_changed_parameter_of_one_stage_of_a_rule_leaves_the_others(finished):
+    (finished.folder / "other.yaml").write_text("superpixels: {count: 77}\n")
+    output = finished.run("--configfile", "other.yaml")
+    at_work = Counter(re.findall(r"^(\w+) of .*: at work", output, re.MULTILINE))
+    assert at_work == Counter(superpixels=2) and set(jobs_done(output)) == {"cues"}
 
 
 def test_edited_source_reruns_its_stage_and_what_follows(finished):
@@ -178,15 +186,18 @@ def test_methods_share_what_they_have_in_common(finished):
     methods = ("fused_sdf", "deformed_sdf", "tsdf", "soft_maximum", "hard_maximum")
     (finished.folder / "all.yaml").write_text(f"methods: [{', '.join(methods)}, poisson]\n")
     output = finished.run("--configfile", "all.yaml")
-    expected = {"stereo": 2, "densify": 1, "deform": 1, "fuse_baseline": 3, "object": 4, "poisson": 1, "evaluate": 5}
+    expected = {"stereo": 2, "densify": 1, "deform": 1, "fuse_baseline": 3, "poisson": 1, "evaluate": 5}
+    expected |= {"locate_object": 4, "object": 4}
     assert jobs_done(output) == Counter({**expected, "collect": 1})
-    fields = {
-        method: json.loads((finished.folder / f"results/sample/11_object/{method}/mesh.ply").read_text())["inputs"][
-            "field"
-        ]
-        for method in methods
-    }
-    assert len(set(fields.values())) == 5
+    results = finished.folder / "results/sample"
+    fields = set()
+    for method in methods:
+        made = json.loads((results / f"11_object/{method}/mesh.ply").read_text())["inputs"]
+        found = results / f"07_fusion/located/{method}.zarr.zip"
+        assert made["located"] == hashlib.sha256(found.read_bytes()).hexdigest()
+        assert made["field"] == json.loads(found.read_text())["inputs"]["volume"]
+        fields.add(made["field"])
+    assert len(fields) == 5
     patches = json.loads((finished.folder / "results/sample/05_stereo/000001.zarr.zip").read_text())
     assert patches["inputs"]["support"] is not None and patches["names"] == {"keyframe": "000001"}
     assert "Nothing to be done" in finished.run("--configfile", "all.yaml")
@@ -218,7 +229,7 @@ def test_methods_of_the_segmentation_share_their_cuts(finished):
     cuts = {"gc_2d": "images", "gc_2d3d_pixel": "joint", "gc_2d3d_voxel": "joint", "sdf_2d3d_voxel": "joint"}
     (finished.folder / "cuts.yaml").write_text(f"methods: [{', '.join(cuts)}, gc_select, volumetric_gc]\n")
     output = finished.run("--configfile", "cuts.yaml")
-    expected = {"superpixels": 2, "segment": 2, "volumetric_cut": 1, "cut_object": 4, "pixel_masks": 2, "evaluate": 6}
+    expected = {"segment": 2, "volumetric_cut": 1, "cut_object": 4, "pixel_masks": 2, "evaluate": 6}
     assert jobs_done(output) == Counter({**expected, "collect": 1})
     results = finished.folder / "results/sample"
     for method, cut in cuts.items():
@@ -229,7 +240,11 @@ def test_methods_of_the_segmentation_share_their_cuts(finished):
     with_field = json.loads((results / "11_object/sdf_2d3d_voxel/mesh.ply").read_text())
     assert with_field["inputs"]["field"] is not None
     (finished.folder / "deformed.yaml").write_text("methods: [gc_2d3d_pixel]\nsegment: {field: deformed}\n")
-    assert jobs_done(finished.run("--configfile", "deformed.yaml"))["deform"] == 1
+    done = jobs_done(finished.run("--configfile", "deformed.yaml"))
+    assert done["deform"] == done["locate_object"] == done["segment"] == 1
+    labels = json.loads((results / "10_segment/joint.zarr.zip").read_text())
+    found = results / "07_fusion/located/deformed_sdf.zarr.zip"
+    assert labels["inputs"]["located"] == hashlib.sha256(found.read_bytes()).hexdigest()
 
 
 def test_variants_cut_again_with_their_settings_and_get_a_table(finished):
@@ -239,7 +254,7 @@ def test_variants_cut_again_with_their_settings_and_get_a_table(finished):
         "variants: {no_table: {segment: {table: false}}, coarse: {cut_object: {dilation: 5}}}\n"
     )
     output = finished.run("--configfile", "variants.yaml")
-    expected = {"superpixels": 2, "segment": 2, "cut_object": 3, "pixel_masks": 3, "evaluate": 6, "collect": 1}
+    expected = {"segment": 2, "cut_object": 3, "pixel_masks": 3, "evaluate": 6, "collect": 1}
     # masks of pixels do not depend on how a mesh is cut: those of the second variant are those of none
     assert jobs_done(output) + jobs_taken(output) == Counter(expected)
     results = finished.folder / "results/sample"
@@ -274,7 +289,9 @@ def test_where_depth_needs_stereo_whole_images_are_matched_before_the_object_is_
 def test_points_switched_off_need_no_stereo(finished):
     (finished.folder / "off.yaml").write_text("methods: [deformed_sdf]\ndensify: {points: off}\n")
     output = finished.run("--configfile", "off.yaml")
-    assert jobs_done(output) == Counter(dict.fromkeys(("densify", "deform", "object", "evaluate", "collect"), 1))
+    assert jobs_done(output) == Counter(
+        dict.fromkeys(("densify", "deform", "locate_object", "object", "evaluate", "collect"), 1)
+    )
     cloud = json.loads((finished.folder / "results/sample/08_densify/points.zarr.zip").read_text())
     assert cloud["inputs"]["stereo"] is None
 
@@ -296,13 +313,12 @@ def test_depth_experiment_tries_keyframes_that_have_a_true_depth_and_joins_the_t
         "poses",
         "undistort",
         "keyframes",
-        "edges",
         "depth_trial",
         "depth_experiment",
         "collect",
     )
     assert jobs_done(output) == Counter(once)
-    trial = json.loads((project.folder / "results/mug/12_depth_experiment/000002.zarr.zip").read_text())
+    trial = json.loads((project.folder / "results/mug/12_depth_experiment/trials/000002.zarr.zip").read_text())
     assert trial["names"]["depth_scale"] == 5000 and trial["names"]["depth_settings"]["prior"] == "rotation_invariant"
     assert "own,mug,depth/all" in (project.folder / "results/metrics.csv").read_text()
     assert "Nothing to be done" in project.run("--configfile", "own.yaml")

@@ -20,6 +20,9 @@ TRIED = [name for name in SEQUENCES if SEQUENCES[name]["depth_experiment"]]
 # Jobs on a sequence that can use two cores get them where there is one sequence. Of several, others fill the second core:
 # it would idle while such a job waits for both, and through half of the work on poses.
 THREADS = 2 if len(SEQUENCES) == 1 else 1
+# Keyframes that a job works on at once: on this machine its cores, shared by the sequences; on a cluster a part of a node.
+CORES = workflow.resource_settings.cores
+KEYFRAMES_AT_ONCE = 8 if CORES is None else max(1, CORES // max(1, len(SEQUENCES)))
 STORE_DIGESTS = InputDigests(Path(config["store"]) / "digests")
 
 
@@ -28,8 +31,8 @@ VARIANTS = config["variants"] or {}
 
 wildcard_constraints:
     sequence="[^/]+",
-    keyframe="[^/]+",
     method="[^/]+",
+    scope="(03_scene/)?",  # the scene pass, on small whole frames; empty for the pass on crops of the object
     variant="(@[^/]+)?",  # of the joint segmentation; empty for the configuration itself
 
 
@@ -52,3 +55,13 @@ def settings_of(stage):
         return config.get(stage, {}) | own.get(stage, {}) | variant.get(stage, {})
 
     return find
+
+
+def settings_of_each(*stages):
+    """Return a function of the wildcards: the configuration that each of several stages reads, by stage."""
+    return lambda wildcards: {stage: settings_of(stage)(wildcards) for stage in stages}
+
+
+def memory_of_keyframes(megabytes):
+    """Return a resource function: the MB of a job that needs so many for each keyframe that it works on at once."""
+    return lambda wildcards, threads: megabytes * threads

@@ -4,7 +4,7 @@
 rule deform:
     input:
         field="results/{sequence}/07_fusion/object.zarr.zip",
-        support="results/{sequence}/07_fusion/support.json",
+        support="results/{sequence}/03_scene/support.json",
         cloud="results/{sequence}/08_densify/points.zarr.zip",
     output:
         volume="results/{sequence}/09_deform/volume.zarr.zip",
@@ -22,7 +22,7 @@ rule deform:
         settings=settings_of("deform"),
         seed=config["seed"],
         labels=lambda wildcards: {
-            name: settings_of("object")(wildcards)[name]
+            name: settings_of("locate_object")(wildcards)[name]
             for name in ("clearance", "noise_clearance")
         },
     message:

@@ -3,12 +3,12 @@
 
 rule densify:
     input:
-        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        crops="results/{sequence}/04_crops/crops.zarr.zip",
+        keyframes="results/{sequence}/04_crops/keyframes.json",
         poses="results/{sequence}/02_poses/poses.json",
         points="results/{sequence}/02_poses/points.zarr.zip",
-        support="results/{sequence}/07_fusion/support.json",
-        stereo=if_matched_here("results/{sequence}/05_stereo/{keyframe}.zarr.zip"),
+        support="results/{sequence}/03_scene/support.json",
+        stereo=if_matched_here("results/{sequence}/05_stereo"),
     output:
         cloud="results/{sequence}/08_densify/points.zarr.zip",
     log:

@@ -3,27 +3,28 @@
 
 rule depth:
     input:
-        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        semidense="results/{sequence}/04_semidense/{keyframe}.zarr.zip",
-        edges="results/{sequence}/05_edges/{keyframe}.zarr.zip",
-        stereo=if_wide("results/{sequence}/05_stereo/checked/{keyframe}.zarr.zip"),
+        crops="results/{sequence}/{scope}04_crops/crops.zarr.zip",
+        keyframes="results/{sequence}/{scope}04_crops/keyframes.json",
+        semidense="results/{sequence}/{scope}04_semidense",
+        edges="results/{sequence}/{scope}05_edges",
+        stereo=if_wide("results/{sequence}/{scope}05_stereo_checked"),
     output:
-        depth="results/{sequence}/06_depth/{keyframe}.zarr.zip",
+        depth=directory("results/{sequence}/{scope}06_depth"),
     log:
-        "results/{sequence}/logs/depth/{keyframe}.log",
+        "results/{sequence}/{scope}logs/depth.log",
     benchmark:
-        "results/{sequence}/benchmarks/depth/{keyframe}.tsv"
+        "results/{sequence}/{scope}benchmarks/depth.tsv"
     conda:
         "../../envs/threedfs.yaml"
-    threads: 1
+    threads: KEYFRAMES_AT_ONCE
     resources:
-        mem_mb=1500,
+        mem_mb=memory_of_keyframes(1500),
     params:
+        stages=["depth"],
         code=code_of("depth"),
-        settings=settings_of("depth"),
+        settings=settings_of_each("depth"),
         seed=config["seed"],
     message:
-        "Dense depth of {wildcards.sequence} {wildcards.keyframe}."
+        "Dense depth of {wildcards.sequence}."
     script:
-        "../scripts/run_stage.py"
+        "../scripts/run_keyframes.py"

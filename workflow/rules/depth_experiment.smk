@@ -1,32 +1,36 @@
 # 12: the paper's depth experiment: three priors and interpolation, from depths drawn from the ground truth.
-from threedfs.io.truth_files import choose_with_depth
+TRIALS = ["edges", "depth_trial"]
 
 
 rule depth_trial:
     input:
-        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        edges="results/{sequence}/05_edges/{keyframe}.zarr.zip",
+        frames="results/{sequence}/01_frames/frames.zarr.zip",
+        crops="results/{sequence}/04_crops/crops.zarr.zip",
+        keyframes="results/{sequence}/04_crops/keyframes.json",
         poses="results/{sequence}/02_poses/poses.json",
         masks_truth=given("truth_masks"),
         cameras_truth=given("truth_cameras"),
         mesh_truth=given("truth_mesh"),
         depth_truth=given("truth_depth"),
     output:
-        trial="results/{sequence}/12_depth_experiment/{keyframe}.zarr.zip",
+        edges=directory("results/{sequence}/12_depth_experiment/edges"),
+        trial=directory("results/{sequence}/12_depth_experiment/trials"),
     log:
-        "results/{sequence}/logs/depth_trial/{keyframe}.log",
+        "results/{sequence}/logs/depth_trial.log",
     benchmark:
-        "results/{sequence}/benchmarks/depth_trial/{keyframe}.tsv"
+        "results/{sequence}/benchmarks/depth_trial.tsv"
     conda:
         "../../envs/threedfs.yaml"
-    threads: 1
+    threads: KEYFRAMES_AT_ONCE
     resources:
-        mem_mb=1500,
+        mem_mb=memory_of_keyframes(1500),
     params:
-        code=code_of("depth_trial"),
-        settings=settings_of("depth_trial"),
+        stages=TRIALS,
+        code=[code_of(stage) for stage in TRIALS],
+        settings=settings_of_each(*TRIALS),
         seed=config["seed"],
+        trials=count_trials,  # the keyframes follow from inputs: Snakemake does not watch them
+        keyframes=choose_trials,
         folders=fingerprint_of("truth_masks", "truth_cameras", "truth_depth"),
         labels=lambda wildcards: {
             "depth_settings": settings_of("depth")(wildcards),
@@ -35,21 +39,14 @@ rule depth_trial:
             "intrinsics": SEQUENCES[wildcards.sequence]["intrinsics"],
         },
     message:
-        "Depth of {wildcards.sequence} {wildcards.keyframe} by every prior."
+        "Depth of {wildcards.sequence} by every prior."
     script:
-        "../scripts/run_stage.py"
+        "../scripts/run_keyframes.py"
 
 
 rule depth_experiment:
     input:
-        trials=per_keyframe(
-            "results/{sequence}/12_depth_experiment/{keyframe}.zarr.zip",
-            choose=lambda names, wildcards: choose_with_depth(
-                names,
-                SEQUENCES[wildcards.sequence]["truth_depth"],
-                settings_of("depth_experiment")(wildcards)["keyframes"],
-            ),
-        ),
+        trials="results/{sequence}/12_depth_experiment/trials",
     output:
         metrics="results/{sequence}/12_depth_experiment/metrics.csv",
     log:

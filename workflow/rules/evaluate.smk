@@ -4,8 +4,8 @@
 rule evaluate_reconstruction:
     input:
         poses="results/{sequence}/02_poses/poses.json",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
+        keyframes="results/{sequence}/04_crops/keyframes.json",
+        depth="results/{sequence}/06_depth",
         frames="results/{sequence}/01_frames/frames.zarr.zip",
         cameras_truth=given("truth_cameras"),
         mesh_truth=given("truth_mesh"),

@@ -1,16 +1,16 @@
-# 07: check the depth maps against each other, fuse them, find the object and fuse it finely.
+# 07: check the depth maps against each other, fuse them around the object.
 
 
 rule consistency:
     input:
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
+        keyframes="results/{sequence}/{scope}04_crops/keyframes.json",
+        depth="results/{sequence}/{scope}06_depth",
     output:
-        consistency="results/{sequence}/07_fusion/consistency.zarr.zip",
+        consistency="results/{sequence}/{scope}07_fusion/consistency.zarr.zip",
     log:
-        "results/{sequence}/logs/consistency.log",
+        "results/{sequence}/{scope}logs/consistency.log",
     benchmark:
-        "results/{sequence}/benchmarks/consistency.tsv"
+        "results/{sequence}/{scope}benchmarks/consistency.tsv"
     conda:
         "../../envs/threedfs.yaml"
     threads: THREADS
@@ -26,66 +26,12 @@ rule consistency:
         "../scripts/run_stage.py"
 
 
-rule fuse_scene:
-    input:
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        points="results/{sequence}/02_poses/points.zarr.zip",
-        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
-        consistency="results/{sequence}/07_fusion/consistency.zarr.zip",
-    output:
-        scene="results/{sequence}/07_fusion/scene.zarr.zip",
-    log:
-        "results/{sequence}/logs/fuse_scene.log",
-    benchmark:
-        "results/{sequence}/benchmarks/fuse_scene.tsv"
-    conda:
-        "../../envs/threedfs.yaml"
-    threads: THREADS
-    resources:
-        mem_mb=memory_of("fuse_scene", grid="fuse_scene"),
-    params:
-        code=code_of("fuse_scene"),
-        settings=settings_of("fuse_scene"),
-        seed=config["seed"],
-    message:
-        "Fuse the scene of {wildcards.sequence}."
-    script:
-        "../scripts/run_stage.py"
-
-
-rule locate:
-    input:
-        scene="results/{sequence}/07_fusion/scene.zarr.zip",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        points="results/{sequence}/02_poses/points.zarr.zip",
-        semidense=per_keyframe("results/{sequence}/04_semidense/{keyframe}.zarr.zip"),
-    output:
-        support="results/{sequence}/07_fusion/support.json",
-    log:
-        "results/{sequence}/logs/locate.log",
-    benchmark:
-        "results/{sequence}/benchmarks/locate.tsv"
-    conda:
-        "../../envs/threedfs.yaml"
-    threads: 1
-    resources:
-        mem_mb=memory_of("locate", grid="fuse_scene"),
-    params:
-        code=code_of("locate"),
-        settings=settings_of("locate"),
-        seed=config["seed"],
-    message:
-        "Find the support plane and the object of {wildcards.sequence}."
-    script:
-        "../scripts/run_stage.py"
-
-
 rule fuse_object:
     input:
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
+        keyframes="results/{sequence}/04_crops/keyframes.json",
+        depth="results/{sequence}/06_depth",
         consistency="results/{sequence}/07_fusion/consistency.zarr.zip",
-        support="results/{sequence}/07_fusion/support.json",
+        support="results/{sequence}/03_scene/support.json",
     output:
         volume="results/{sequence}/07_fusion/object.zarr.zip",
     log:
@@ -109,9 +55,9 @@ rule fuse_object:
 
 rule fuse_baseline:
     input:
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
-        support="results/{sequence}/07_fusion/support.json",
+        keyframes="results/{sequence}/04_crops/keyframes.json",
+        depth="results/{sequence}/06_depth",
+        support="results/{sequence}/03_scene/support.json",
     output:
         volume="results/{sequence}/07_fusion/baseline/{fusion}.zarr.zip",
     log:

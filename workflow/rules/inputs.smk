@@ -1,6 +1,7 @@
-# Where rules find their inputs: what the configuration names, and one file per keyframe.
+# Where rules find their inputs: what the configuration names, and what depends on the keyframes.
 
 from threedfs.params.configuration import JOINT_METHODS
+from threedfs.io.truth_files import choose_with_depth
 from threedfs.memory import estimate_memory
 
 FIELDS = {  # where each method that has one finds the object's field
@@ -63,14 +64,16 @@ def read_keyframes(wildcards):
     return json.loads(Path(keyframes).read_text())
 
 
-def per_keyframe(pattern, choose=lambda names, wildcards: names):
-    """Return an input function: one file per (chosen) keyframe, in their order."""
+def count_trials(wildcards):
+    """Return how many keyframes of a sequence are to take part in the depth experiment."""
+    return settings_of("depth_experiment")(wildcards)["keyframes"]
 
-    def find(wildcards):
-        names = choose(read_keyframes(wildcards)["order"], wildcards)
-        return expand(pattern, keyframe=names, allow_missing=True)
 
-    return find
+def choose_trials(wildcards, input):
+    """Return the keyframes that take part in the depth experiment, among those with a true depth image."""
+    order = json.loads(Path(input.keyframes).read_text())["order"]
+    folder = SEQUENCES[wildcards.sequence]["truth_depth"]
+    return choose_with_depth(order, folder, count_trials(wildcards))
 
 
 def is_wide(wildcards):
@@ -79,13 +82,13 @@ def is_wide(wildcards):
 
 
 def if_wide(pattern):
-    """Return an input function: a file, if keyframes are far apart, or nothing."""
+    """Return an input function: a folder, if keyframes are far apart, or nothing."""
     return lambda wildcards: pattern if is_wide(wildcards) else []
 
 
-def unless_wide(pattern):
-    """Return an input function: nothing, if keyframes are far apart, or a file."""
-    return lambda wildcards: [] if is_wide(wildcards) else pattern
+def box_of_scope(wildcards):
+    """Return where the object is, or nothing in the scene pass, which looks for it."""
+    return [] if wildcards.scope else "results/{sequence}/03_scene/support.json"
 
 
 def results_of_method(method):
@@ -108,10 +111,30 @@ def labels_of_method(wildcards):
     return f"results/{wildcards.sequence}/10_segment/{name}.zarr.zip"
 
 
+def field_to_search(wildcards):
+    """Return the field that the object is looked for in."""
+    return f"results/{wildcards.sequence}/{FIELDS[wildcards.field]}"
+
+
+def segmented_method(wildcards):
+    """Return the method whose field the segmentation weighs."""
+    return f"{settings_of('segment')(wildcards)['field']}_sdf"
+
+
 def field_to_segment(wildcards):
     """Return the field that the segmentation weighs."""
-    method = f"{settings_of('segment')(wildcards)['field']}_sdf"
-    return f"results/{wildcards.sequence}/{FIELDS[method]}"
+    return f"results/{wildcards.sequence}/{FIELDS[segmented_method(wildcards)]}"
+
+
+def located_to_segment(wildcards):
+    """Return where the object is in that field."""
+    return f"results/{wildcards.sequence}/07_fusion/located/{segmented_method(wildcards)}.zarr.zip"
+
+
+def count_keyframes(input):
+    """Return the number of keyframes that a job reads; 0 before it is known, or for a job that reads none."""
+    keyframes = Path(input.get("keyframes", ""))
+    return len(json.loads(keyframes.read_text())["order"]) if keyframes.is_file() else 0
 
 
 def memory_of(stage, grid="fuse_object", unknowns=lambda wildcards: 0):
@@ -119,9 +142,12 @@ def memory_of(stage, grid="fuse_object", unknowns=lambda wildcards: 0):
 
     def estimate(wildcards, input):
         side = settings_of(grid)(wildcards)["longest_side"]
-        pixels = 0.75 * settings_of("frames")(wildcards)["longest_side"] ** 2
-        maps = input.get("depth", input.get("semidense", []))
-        return estimate_memory(stage, side, pixels, len(maps), unknowns(wildcards))
+        crops = settings_of("crops")(wildcards)
+        whole = crops["whole"] or wildcards.sequence not in OBJECTS
+        pixels = 0.75 * crops["longest_side"] ** 2 if whole else crops["pixels"]
+        return estimate_memory(
+            stage, side, pixels, count_keyframes(input), unknowns(wildcards)
+        )
 
     return estimate
 
@@ -152,14 +178,13 @@ def finds_cuda(wildcards):
 
 
 def if_matched_here(pattern):
-    """Return an input function: one file per keyframe, if our own patch match is to make the points, or nothing."""
-    each = per_keyframe(pattern)
+    """Return an input function: a folder, if our own patch match is to make the points, or nothing."""
 
     def find(wildcards):
         settings = settings_of("densify")(wildcards)
         engine = choose_engine(
             settings["points"], settings["engine"], finds_cuda(wildcards)
         )
-        return each(wildcards) if engine == "cpu" else []
+        return pattern if engine == "cpu" else []
 
     return find

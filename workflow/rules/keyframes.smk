@@ -3,7 +3,7 @@
 
 checkpoint keyframes:
     input:
-        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
+        frames="results/{sequence}/01_frames/frames.zarr.zip",
         poses="results/{sequence}/02_poses/poses.json",
         points="results/{sequence}/02_poses/points.zarr.zip",
         masks=given("truth_masks"),

@@ -4,11 +4,10 @@
 rule object:
     input:
         field=field_of_method,
-        support="results/{sequence}/07_fusion/support.json",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        located="results/{sequence}/07_fusion/located/{method}.zarr.zip",
+        keyframes="results/{sequence}/04_crops/keyframes.json",
         poses="results/{sequence}/02_poses/poses.json",
         frames="results/{sequence}/01_frames/frames.zarr.zip",
-        semidense=per_keyframe("results/{sequence}/04_semidense/{keyframe}.zarr.zip"),
     output:
         mesh="results/{sequence}/11_object/{method}/mesh.ply",
         volume="results/{sequence}/11_object/{method}/volume.zarr.zip",
@@ -38,8 +37,8 @@ rule object:
 rule poisson:
     input:
         cloud="results/{sequence}/08_densify/points.zarr.zip",
-        support="results/{sequence}/07_fusion/support.json",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        support="results/{sequence}/03_scene/support.json",
+        keyframes="results/{sequence}/04_crops/keyframes.json",
         poses="results/{sequence}/02_poses/poses.json",
         frames="results/{sequence}/01_frames/frames.zarr.zip",
     output:
@@ -69,10 +68,10 @@ rule cut_object:
     input:
         labels=labels_of_method,
         field=field_to_cut,
-        support="results/{sequence}/07_fusion/support.json",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        support="results/{sequence}/03_scene/support.json",
+        keyframes="results/{sequence}/04_crops/keyframes.json",
         poses="results/{sequence}/02_poses/poses.json",
-        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
+        crops="results/{sequence}/04_crops/crops.zarr.zip",
     output:
         mesh="results/{sequence}/11_object/{method}{variant}/mesh.ply",
         silhouettes="results/{sequence}/11_object/{method}{variant}/silhouettes.zarr.zip",
@@ -101,7 +100,7 @@ rule cut_object:
 rule pixel_masks:
     input:
         labels=labels_of_method,
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
+        keyframes="results/{sequence}/04_crops/keyframes.json",
         poses="results/{sequence}/02_poses/poses.json",
         frames="results/{sequence}/01_frames/frames.zarr.zip",
     output:

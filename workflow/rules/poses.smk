@@ -1,4 +1,4 @@
-# 02: keypoints, camera of every frame, sparse points, undistorted frames.
+# 02: keypoints, camera of every frame, sparse points.
 
 
 rule features:
@@ -57,30 +57,5 @@ rule poses:
         },
     message:
         "Find the cameras of {wildcards.sequence}."
-    script:
-        "../scripts/run_stage.py"
-
-
-rule undistort:
-    input:
-        frames="results/{sequence}/01_frames/frames.zarr.zip",
-        poses="results/{sequence}/02_poses/poses.json",
-    output:
-        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
-    log:
-        "results/{sequence}/logs/undistort.log",
-    benchmark:
-        "results/{sequence}/benchmarks/undistort.tsv"
-    conda:
-        "../../envs/threedfs.yaml"
-    threads: 1
-    resources:
-        mem_mb=1500,
-    params:
-        code=code_of("undistort"),
-        settings=settings_of("undistort"),
-        seed=config["seed"],
-    message:
-        "Undistort the frames of {wildcards.sequence}."
     script:
         "../scripts/run_stage.py"

@@ -1,43 +1,16 @@
 # 10: one labelling of superpixels and voxels, and its baselines.
 
 
-rule superpixels:
-    input:
-        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        edges="results/{sequence}/05_edges/{keyframe}.zarr.zip",
-    output:
-        superpixels="results/{sequence}/10_segment/superpixels/{keyframe}.zarr.zip",
-    log:
-        "results/{sequence}/logs/superpixels/{keyframe}.log",
-    benchmark:
-        "results/{sequence}/benchmarks/superpixels/{keyframe}.tsv"
-    conda:
-        "../../envs/threedfs.yaml"
-    threads: 1
-    resources:
-        mem_mb=1000,
-    params:
-        code=code_of("superpixels"),
-        settings=settings_of("superpixels"),
-        seed=config["seed"],
-    message:
-        "Superpixels of {wildcards.sequence} {wildcards.keyframe}."
-    script:
-        "../scripts/run_stage.py"
-
-
 rule segment:
     input:
         field=field_to_segment,
-        support="results/{sequence}/07_fusion/support.json",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
-        superpixels=per_keyframe(
-            "results/{sequence}/10_segment/superpixels/{keyframe}.zarr.zip"
-        ),
-        semidense=per_keyframe("results/{sequence}/04_semidense/{keyframe}.zarr.zip"),
-        depth=per_keyframe("results/{sequence}/06_depth/{keyframe}.zarr.zip"),
+        located=located_to_segment,
+        support="results/{sequence}/03_scene/support.json",
+        keyframes="results/{sequence}/04_crops/keyframes.json",
+        crops="results/{sequence}/04_crops/crops.zarr.zip",
+        superpixels="results/{sequence}/10_segment/superpixels",
+        semidense="results/{sequence}/04_semidense",
+        depth="results/{sequence}/06_depth",
         consistency="results/{sequence}/07_fusion/consistency.zarr.zip",
     output:
         labels="results/{sequence}/10_segment/{cut}{variant}.zarr.zip",
@@ -64,10 +37,10 @@ rule segment:
 
 rule volumetric_cut:
     input:
-        support="results/{sequence}/07_fusion/support.json",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
-        semidense=per_keyframe("results/{sequence}/04_semidense/{keyframe}.zarr.zip"),
+        support="results/{sequence}/03_scene/support.json",
+        keyframes="results/{sequence}/04_crops/keyframes.json",
+        crops="results/{sequence}/04_crops/crops.zarr.zip",
+        semidense="results/{sequence}/04_semidense",
     output:
         labels="results/{sequence}/10_segment/volumetric.zarr.zip",
     log:

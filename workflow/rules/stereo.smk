@@ -1,54 +1,55 @@
-# 05: slanted patches of a keyframe that match in other views: of the whole image where depth needs them, else of the
-# pixels that see the object's box.
+# 05: slanted patches of a keyframe that match in other views: of the pixels that see the object's box, once it is known.
 
 
 rule stereo:
     input:
-        undistorted="results/{sequence}/02_poses/undistorted.zarr.zip",
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        semidense="results/{sequence}/04_semidense/{keyframe}.zarr.zip",
-        support=unless_wide("results/{sequence}/07_fusion/support.json"),
+        crops="results/{sequence}/{scope}04_crops/crops.zarr.zip",
+        keyframes="results/{sequence}/{scope}04_crops/keyframes.json",
+        semidense="results/{sequence}/{scope}04_semidense",
+        support=box_of_scope,
     output:
-        stereo="results/{sequence}/05_stereo/{keyframe}.zarr.zip",
+        stereo=directory("results/{sequence}/{scope}05_stereo"),
     log:
-        "results/{sequence}/logs/stereo/{keyframe}.log",
+        "results/{sequence}/{scope}logs/stereo.log",
     benchmark:
-        "results/{sequence}/benchmarks/stereo/{keyframe}.tsv"
+        "results/{sequence}/{scope}benchmarks/stereo.tsv"
     conda:
         "../../envs/threedfs.yaml"
-    threads: 1
+    threads: KEYFRAMES_AT_ONCE
     resources:
-        mem_mb=1000,
+        mem_mb=memory_of_keyframes(1000),
     params:
+        stages=["stereo"],
         code=code_of("stereo"),
-        settings=settings_of("stereo"),
+        settings=settings_of_each("stereo"),
         seed=config["seed"],
     message:
-        "Match patches of {wildcards.sequence} {wildcards.keyframe}."
+        "Match patches of {wildcards.sequence}."
     script:
-        "../scripts/run_stage.py"
+        "../scripts/run_keyframes.py"
 
 
 rule stereo_check:
     input:
-        keyframes="results/{sequence}/03_keyframes/keyframes.json",
-        stereo=per_keyframe("results/{sequence}/05_stereo/{keyframe}.zarr.zip"),
+        keyframes="results/{sequence}/{scope}04_crops/keyframes.json",
+        stereo="results/{sequence}/{scope}05_stereo",
     output:
-        checked="results/{sequence}/05_stereo/checked/{keyframe}.zarr.zip",
+        checked=directory("results/{sequence}/{scope}05_stereo_checked"),
     log:
-        "results/{sequence}/logs/stereo_check/{keyframe}.log",
+        "results/{sequence}/{scope}logs/stereo_check.log",
     benchmark:
-        "results/{sequence}/benchmarks/stereo_check/{keyframe}.tsv"
+        "results/{sequence}/{scope}benchmarks/stereo_check.tsv"
     conda:
         "../../envs/threedfs.yaml"
-    threads: 1
+    threads: KEYFRAMES_AT_ONCE
     resources:
-        mem_mb=1000,
+        mem_mb=memory_of_keyframes(1000),
     params:
+        stages=["stereo_check"],
         code=code_of("stereo_check"),
-        settings=settings_of("stereo_check"),
+        settings=settings_of_each("stereo_check"),
         seed=config["seed"],
     message:
-        "Check the patches of {wildcards.sequence} {wildcards.keyframe}."
+        "Check the patches of {wildcards.sequence}."
     script:
-        "../scripts/run_stage.py"
+        "../scripts/run_keyframes.py"

@@ -1,4 +1,4 @@
-"""Hand a rule's names to the stage of the same name; the only adapter."""
+"""Hand a rule's names to the stage of the same name; the only adapter of rules that work on a sequence."""
 # ruff: noqa: F821 (Snakemake defines `snakemake` in a script)
 
 from pathlib import Path
@@ -16,7 +16,9 @@ run_job(
     {name: as_paths(value) for name, value in snakemake.input.items()},
     {name: Path(value) for name, value in snakemake.output.items()},
     snakemake.params.settings,
-    {name: value for name, value in snakemake.wildcards.items() if name != "variant"},  # it is in the settings
+    {
+        name: value for name, value in snakemake.wildcards.items() if name not in ("variant", "scope")
+    },  # the settings have it, or the paths
     snakemake.params.get("labels", {}),
     store=Path(snakemake.config["store"]),
     log=Path(snakemake.log[0]),

@@ -11,7 +11,7 @@ import numpy as np
 import pycolmap
 
 from threedfs.errors import UserError
-from threedfs.types import OrientedPoints, View
+from threedfs.types import Box, OrientedPoints, View
 
 Track = tuple[np.ndarray, Sequence[int]]
 """A point (3,) in the world, and the ranks of the views that see it."""
@@ -137,7 +137,7 @@ def can_match_on_gpu() -> bool:
     return bool(pycolmap.has_cuda) and pycolmap.get_num_cuda_devices() > 0
 
 
-def fuse_workspace(folder: Path, rule: FusionRule, low: np.ndarray, high: np.ndarray) -> OrientedPoints:
+def fuse_workspace(folder: Path, rule: FusionRule, box: Box) -> OrientedPoints:
     """Fuse the maps of a workspace to oriented points, on one thread.
 
     A point is the median of its pixels, and so is its normal.
@@ -146,20 +146,22 @@ def fuse_workspace(folder: Path, rule: FusionRule, low: np.ndarray, high: np.nda
     ----------
     folder : Path
     rule : FusionRule
-    low, high : (3,) float
-        Corners of the box, world, outside which nothing is fused.
+    box : Box
+        Outside of it nothing is fused.
     """
+    corners = box.corners()  # COLMAP's own box lies along the axes of the world
     options = pycolmap.StereoFusionOptions(
         num_threads=1,
         min_num_pixels=rule.min_pixels,
         max_depth_error=rule.max_depth_error,
         max_reproj_error=rule.max_reprojection_error,
         max_normal_error=rule.max_normal_error,
-        bounding_box=(np.asarray(low, np.float32), np.asarray(high, np.float32)),
+        bounding_box=(corners.min(axis=0).astype(np.float32), corners.max(axis=0).astype(np.float32)),
     )
     path = folder / "fused.ply"
     pycolmap.stereo_fusion(path, folder, options=options, output_type="PLY")
-    return OrientedPoints(*_read_ply(path), *_read_visibility(Path(f"{path}.vis")))
+    found = OrientedPoints(*_read_ply(path), *_read_visibility(Path(f"{path}.vis")))
+    return found.take(box.contains(found.xyz))
 
 
 def _file_of(view: View) -> str:

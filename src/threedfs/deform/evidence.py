@@ -49,12 +49,12 @@ def sample_field(sdf: np.ndarray, grid: VoxelGrid, points: np.ndarray) -> np.nda
 
 
 def sample_gradient(sdf: np.ndarray, grid: VoxelGrid, points: np.ndarray) -> np.ndarray:
-    """Return the field's direction of ascent at points: (N, 3) float64, of length 1, 0 where it is flat."""
-    steps = grid.spacing * np.eye(3)
+    """Return the field's direction of ascent at points: (N, 3) float64, world, of length 1, 0 where it is flat."""
+    steps = grid.spacing * grid.axes
     rise = [
         np.nan_to_num(sample_field(sdf, grid, points + step) - sample_field(sdf, grid, points - step)) for step in steps
     ]
-    gradient = np.stack(rise, axis=1)
+    gradient = np.stack(rise, axis=1) @ grid.axes
     return gradient / np.maximum(np.linalg.norm(gradient, axis=1, keepdims=True), 1e-12)
 
 
@@ -117,7 +117,7 @@ def measure_scatter(samples: SurfaceSamples, sdf: np.ndarray, grid: VoxelGrid) -
     rise = sample_field(sdf, grid, samples.xyz + step) - sample_field(sdf, grid, samples.xyz - step)
     slope = max(float(np.nanmedian(rise)) / (2 * grid.spacing), 1e-9)
     foot = samples.xyz - (samples.sdf / slope)[:, None] * ascent
-    place, count = _number_cells(foot, _PLACE * grid.spacing)
+    place, count = _number_cells(grid, foot, _PLACE)
     mean = np.bincount(place, samples.sdf) / count
     apart = np.abs(samples.sdf - mean[place])[count[place] >= _LEAST_OVER_PLACE]
     return float(np.median(apart)) / (slope * grid.spacing) if len(apart) else 0.0
@@ -136,7 +136,7 @@ def believe_scattered(scatter: float, limit: float) -> float:
     return (limit / max(scatter, limit)) ** 2
 
 
-def average_in_cells(samples: SurfaceSamples, size: float, belief: float = 1.0) -> SurfaceSamples:
+def average_in_cells(samples: SurfaceSamples, grid: VoxelGrid, size: float, belief: float = 1.0) -> SurfaceSamples:
     """Return one sample for every cell of space that has some: their mean by trust, with their trust together.
 
     Trust is scaled to a mean of `belief`, so that the fit weighs samples against its ridge the same however many points
@@ -149,20 +149,23 @@ def average_in_cells(samples: SurfaceSamples, size: float, belief: float = 1.0) 
     Parameters
     ----------
     samples : SurfaceSamples
+    grid : VoxelGrid
+        Cells lie along its axes.
     size : float
-        Side of a cell, scene units.
+        Side of a cell, voxels.
     belief : float
         Mean trust of the cells, in (0, 1].
     """
-    cell, _ = _number_cells(samples.xyz, size)
+    cell, _ = _number_cells(grid, samples.xyz, size)
     trust = np.bincount(cell, samples.trust)
     weight = samples.trust / trust[cell]
     xyz = np.stack([np.bincount(cell, weight * places) for places in samples.xyz.T], axis=1)
     return SurfaceSamples(xyz, np.bincount(cell, weight * samples.sdf), belief * (trust / trust.mean()))
 
 
-def _number_cells(places: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
-    """Return the number of the cell that each place (N, 3) lies in, (N,) int, and how many lie in each, (C,) int."""
+def _number_cells(grid: VoxelGrid, points: np.ndarray, size: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return the number of the cell that each point (N, 3) lies in, (N,) int, and how many lie in each, (C,) int."""
+    places = voxel_from_world(grid, points)
     corner = ((places - places.min(axis=0)) / size).astype(np.int64)
     _, cell, count = np.unique(corner, axis=0, return_inverse=True, return_counts=True)
     return cell.ravel(), count

@@ -76,8 +76,8 @@ def evaluate_at(points: np.ndarray, centres: np.ndarray, width: float) -> np.nda
 def evaluate_on_grid(grid: VoxelGrid, centres: np.ndarray, coefficients: np.ndarray, width: float) -> np.ndarray:
     """Sum an expansion at every voxel, (nx, ny, nz) float64.
 
-    A Gaussian is the product of one factor an axis, so that a slab of the grid is a product of two matrices and no
-    exponential is taken per voxel.
+    A Gaussian is the product of one factor for each axis of the grid, so that a slab of the grid is a product of two
+    matrices and no exponential is taken per voxel.
 
     Parameters
     ----------
@@ -86,7 +86,8 @@ def evaluate_on_grid(grid: VoxelGrid, centres: np.ndarray, coefficients: np.ndar
     coefficients : (C,) float64
     width : float
     """
-    x, y, z = (np.exp(-(((places - centres[:, axis]) / width) ** 2)) for axis, places in _axes(grid))
+    along = centres @ grid.axes.T
+    x, y, z = (np.exp(-(((grid.axis(d)[:, None] - along[:, d]) / width) ** 2)) for d in range(3))
     field = np.empty(grid.shape)
     for slab, factor in zip(field, x * coefficients, strict=True):
         np.matmul(y * factor, z.T, out=slab)
@@ -101,10 +102,3 @@ def _halve(points: np.ndarray, rows: np.ndarray) -> list[np.ndarray]:
     ordered = rows[np.argsort(points[rows, longest], kind="stable")]
     half = len(rows) // 2
     return _halve(points, ordered[:half]) + _halve(points, ordered[half:])
-
-
-def _axes(grid: VoxelGrid) -> list[tuple[int, np.ndarray]]:
-    """Return each axis with the positions of its voxels, as a column."""
-    return [
-        (axis, (grid.origin[axis] + grid.spacing * np.arange(count))[:, None]) for axis, count in enumerate(grid.shape)
-    ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from threedfs.geometry.grid import voxel_places
 from threedfs.types import VoxelGrid
 
 ANCHOR_LEVEL = 0.9
@@ -36,7 +37,7 @@ def draw_anchors(
     """
     levels = (sdf - ANCHOR_LEVEL, sdf + ANCHOR_LEVEL)
     drawn = [_draw(np.flatnonzero((np.abs(level) < _LEVEL_BAND) & (seen > 0)), count, rng) for level in levels]
-    return _places(np.concatenate(drawn), grid)
+    return voxel_places(grid, np.concatenate(drawn))
 
 
 def draw_controls(sdf: np.ndarray, grid: VoxelGrid, count: int, near: float, rng: np.random.Generator) -> np.ndarray:
@@ -44,14 +45,10 @@ def draw_controls(sdf: np.ndarray, grid: VoxelGrid, count: int, near: float, rng
     close = np.abs(sdf) < near
     inner = _draw(np.flatnonzero(close), count // 2, rng)
     outer = _draw(np.flatnonzero(~close), count - len(inner), rng)
-    return _places(np.concatenate([inner, outer]), grid)
+    return voxel_places(grid, np.concatenate([inner, outer]))
 
 
 def _draw(candidates: np.ndarray, count: int, rng: np.random.Generator) -> np.ndarray:
     if len(candidates) <= count:
         return candidates
     return np.sort(rng.choice(candidates, count, replace=False))
-
-
-def _places(voxels: np.ndarray, grid: VoxelGrid) -> np.ndarray:
-    return np.asarray(grid.origin) + grid.spacing * np.stack(np.unravel_index(voxels, grid.shape), axis=1)

@@ -4,19 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from threedfs.types import OrientedPoints, Plane
+from threedfs.types import Box, OrientedPoints, Plane
 
 
-def crop_points(
-    points: OrientedPoints, low: np.ndarray, high: np.ndarray, plane: Plane, clearance: float, min_sightings: int
-) -> OrientedPoints:
+def crop_points(points: OrientedPoints, box: Box, plane: Plane, clearance: float, min_sightings: int) -> OrientedPoints:
     """Keep the points in a box that lie over a plane and that enough keyframes see.
 
     Parameters
     ----------
     points : OrientedPoints
-    low, high : (3,) float64
-        Corners of the box, world.
+    box : Box
     plane : Plane
     clearance : float
         Scene units; points no farther over the plane are left out.
@@ -24,14 +21,6 @@ def crop_points(
         Least number of keyframes that see a point.
     """
     xyz = points.xyz.astype(np.float64)
-    kept = ((xyz >= low) & (xyz <= high)).all(axis=1) & (plane.distance(xyz) > clearance)
+    kept = box.contains(xyz) & (plane.distance(xyz) > clearance)
     kept &= points.sightings >= min_sightings
-    renumbered = np.cumsum(kept) - 1
-    seen = kept[points.seen_point]
-    return OrientedPoints(
-        points.xyz[kept],
-        points.normal[kept],
-        points.rgb[kept],
-        renumbered[points.seen_point[seen]],
-        points.seen_view[seen],
-    )
+    return points.take(kept)

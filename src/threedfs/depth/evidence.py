@@ -36,7 +36,7 @@ class Evidence:
 def gather_evidence(
     keyframe: Keyframe,
     read_image: Callable[[str], np.ndarray],
-    valid: np.ndarray,
+    read_valid: Callable[[str], np.ndarray],
     *,
     candidates: int,
     spacing: str,
@@ -55,14 +55,14 @@ def gather_evidence(
     keyframe : Keyframe
     read_image : callable
         Gives the (H, W, 3) uint8 RGB image of a frame by its name; one at a time is held.
-    valid : (H, W) bool
-        Pixels that show the scene in every frame.
+    read_valid : callable
+        Gives the pixels of a frame that show the scene, (H, W) bool, by its name.
     track, note : callable
         Wrap the loop over neighbours, and take a message, to report progress.
     Others
         See `DepthParams`.
     """
-    grey = prepare_grey(read_image(keyframe.view.name), valid)
+    grey = prepare_grey(read_image(keyframe.view.name), read_valid(keyframe.view.name))
     depths = space_candidates(keyframe.near, keyframe.far, candidates, spacing)
     radius = patch_radius or choose_patch_radius(keyframe.neighbour_angle)
     note(f"patches of {2 * radius + 1}x{2 * radius + 1} px")
@@ -70,7 +70,7 @@ def gather_evidence(
         keyframe.view,
         grey,
         keyframe.neighbours,
-        lambda view: prepare_grey(read_image(view.name), valid),
+        lambda view: prepare_grey(read_image(view.name), read_valid(view.name)),
         depths,
         patch_radius=radius,
         variance_floor=variance_floor,

@@ -17,9 +17,6 @@ from threedfs.depth.bending import HALF_OFFSETS, STENCILS, assemble_prior
 
 BORDER = 2
 _COARSEST = 24
-_BENDING_RELIEF = 0.7
-"""Factor of a second-order prior from one grid to the next coarser one: a bilinear surface bends only at the
-coarse nodes, which makes its Galerkin product up to twice too stiff (0.5 without edges, more with many)."""
 _PLANE_OF = {offset: k for k, offset in enumerate(HALF_OFFSETS)}
 
 
@@ -51,15 +48,14 @@ def padded_shape(shape: tuple[int, int]) -> tuple[int, int]:
 def coarsen_prior(weight: np.ndarray, prior: str) -> list[Level]:
     """Assemble a smoothness prior (see `assemble_prior`) on a padded shape and coarsen it, fine first."""
     planes = assemble_prior(weight, prior, BORDER).reshape(len(HALF_OFFSETS), -1)
-    relief = 1.0 if prior == "first_order" else _BENDING_RELIEF
-    return _coarsen(Level(planes, weight.shape, STENCILS[prior]), relief)
+    return _coarsen(Level(planes, weight.shape, STENCILS[prior]))
 
 
 def coarsen_diagonal(diagonal: np.ndarray) -> list[Level]:
     """Coarsen a diagonal matrix (H, W) of a padded shape by Galerkin products, fine first."""
     planes = np.zeros((len(HALF_OFFSETS), (diagonal.shape[0] + 2 * BORDER) * (diagonal.shape[1] + 2 * BORDER)))
     planes[0] = np.pad(diagonal, BORDER).ravel()
-    return _coarsen(Level(planes, diagonal.shape, (0,)), 1.0)
+    return _coarsen(Level(planes, diagonal.shape, (0,)))
 
 
 def flat_offsets(chosen: np.ndarray, stride: int) -> np.ndarray:
@@ -68,13 +64,13 @@ def flat_offsets(chosen: np.ndarray, stride: int) -> np.ndarray:
     return offsets[:, 0] * stride + offsets[:, 1]
 
 
-def _coarsen(level: Level, factor: float) -> list[Level]:
+def _coarsen(level: Level) -> list[Level]:
     levels = [level]
     while min(levels[-1].shape) > _COARSEST + 1:
         fine = levels[-1]
         shape = ((fine.shape[0] + 1) // 2, (fine.shape[1] + 1) // 2)
         terms, shares = _galerkin_terms(fine.used)
-        planes = _add_terms(fine.planes, *fine.shape, *shape, terms, factor * shares)
+        planes = _add_terms(fine.planes, *fine.shape, *shape, terms, shares)
         levels.append(Level(planes, shape, tuple(np.unique(terms[:, 3]).tolist())))
     return levels
 

@@ -113,8 +113,7 @@ def solve_surface(
     active = np.array(problem.prior[0].used[1:], np.int64)
     offsets = flat_offsets(active, width + 2 * BORDER)
 
-    def multiply(x: np.ndarray) -> np.ndarray:
-        return _multiply(planes, diagonal, smoothness, x, height, width, active, offsets)
+    matrix = planes, active, offsets, diagonal, smoothness
 
     right = coupling_factor * confidence * _flatten(auxiliary_depth, problem.padded, confidence > 0)
     right += measurement * _flatten(measured_depth, problem.padded, measurement > 0)
@@ -122,27 +121,23 @@ def solve_surface(
         [problem.prior, problem.confidence, problem.measurement], [smoothness, coupling_factor, 1.0]
     )
     solution = _flatten(start, problem.padded)
-    residual = right - multiply(solution)
-    scale = float(right @ preconditioner.apply(right)) or 1.0
-    direction = np.zeros_like(right)
-    previous = np.zeros_like(right)
-    energy_before = 1.0
+    direction, product = np.zeros_like(right), np.zeros_like(right)
+    _direct(*matrix, solution, 0.0, direction, product, height, width)
+    residual = right - product
+    scale = _two_products(right, right, preconditioner.apply(right))[0] or 1.0
+    energy_before, length = 1.0, 0.0
     error = np.inf
     for step in range(max_steps + 1):
         preconditioned = preconditioner.apply(residual)
-        energy = float(residual @ preconditioned)
+        energy, overlap = _two_products(residual, product, preconditioned)
         error = np.sqrt(max(energy, 0.0) / scale)
         if error <= tolerance or step == max_steps:
             break
-        # Polak and Ribiere's factor forgives the rounding of a single-precision preconditioner.
-        factor = max((energy - float(previous @ preconditioned)) / energy_before, 0.0) if step else 0.0
-        direction *= factor
-        direction += preconditioned
-        product = multiply(direction)
-        length = energy / float(direction @ product)
-        solution += length * direction
-        previous = residual
-        residual = residual - length * product
+        # Polak and Ribiere's factor forgives the rounding of a single-precision preconditioner: the product of the
+        # new direction with the change of the residual, -length * product.
+        factor = max(-length * overlap / energy_before, 0.0) if step else 0.0
+        length = energy / _direct(*matrix, preconditioned, factor, direction, product, height, width)
+        _advance(length, direction, product, solution, residual)
         energy_before = energy
     inner = solution.reshape(height + 2 * BORDER, -1)[
         BORDER : BORDER + problem.shape[0], BORDER : BORDER + problem.shape[1]
@@ -163,27 +158,54 @@ def _flatten(image: np.ndarray, padded: tuple[int, int], where: np.ndarray | Non
 
 
 @njit(cache=True)
-def _multiply(planes, diagonal, smoothness, x, height, width, active, offsets):
+def _direct(planes, active, offsets, diagonal, smoothness, gradient, factor, direction, product, height, width):
+    """Turn the direction to gradient + factor * direction; fill its product with the matrix, and return both's."""
     stride = width + 2 * BORDER
-    out = np.zeros_like(x)
-    for v in range(height):
-        first = (v + BORDER) * stride + BORDER
-        last = first + width
-        row = out[first:last]
-        centre = planes[0, first:last]
-        here = x[first:last]
-        for u in range(width):
-            row[u] = centre[u] * here[u]
-        for n in range(len(active)):
-            k = active[n]
-            o = offsets[n]
-            ahead = planes[k, first:last]
-            behind = planes[k, first - o : last - o]
-            x_ahead = x[first + o : last + o]
-            x_behind = x[first - o : last - o]
+    total = 0.0
+    for v in range(height + 2):
+        if v < height:
+            first = (v + BORDER) * stride + BORDER
+            turned, given = direction[first : first + width], gradient[first : first + width]
             for u in range(width):
-                row[u] += ahead[u] * x_ahead[u] + behind[u] * x_behind[u]
-        plain = diagonal[first:last]
+                turned[u] = factor * turned[u] + given[u]
+        if v >= 2:  # the rows that this one is coupled with are turned
+            first = (v - 2 + BORDER) * stride + BORDER
+            last = first + width
+            row, here = product[first:last], direction[first:last]
+            _multiply_row(planes, active, offsets, direction, first, width, row)
+            plain = diagonal[first:last]
+            for u in range(width):
+                row[u] = smoothness * row[u] + plain[u] * here[u]
+            for u in range(width):
+                total += row[u] * here[u]
+    return total
+
+
+@njit(cache=True)
+def _multiply_row(planes, active, offsets, x, first, width, out):
+    last = first + width
+    centre, here = planes[0, first:last], x[first:last]
+    for u in range(width):
+        out[u] = centre[u] * here[u]
+    for n in range(len(active)):
+        k, o = active[n], offsets[n]
+        ahead, behind = planes[k, first:last], planes[k, first - o : last - o]
+        x_ahead, x_behind = x[first + o : last + o], x[first - o : last - o]
         for u in range(width):
-            row[u] = smoothness * row[u] + plain[u] * here[u]
-    return out
+            out[u] += ahead[u] * x_ahead[u] + behind[u] * x_behind[u]
+
+
+@njit(cache=True)
+def _two_products(first, second, common):
+    one, other = 0.0, 0.0
+    for i in range(len(common)):
+        one += first[i] * common[i]
+        other += second[i] * common[i]
+    return one, other
+
+
+@njit(cache=True)
+def _advance(length, direction, product, solution, residual):
+    for i in range(len(solution)):
+        solution[i] += length * direction[i]
+        residual[i] -= length * product[i]

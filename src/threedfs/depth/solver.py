@@ -8,9 +8,13 @@ from dataclasses import dataclass
 import numpy as np
 
 from threedfs.depth.bending import release_bends
+from threedfs.depth.halving import DepthData, double_depth, halve_data
 from threedfs.depth.linear_solve import pose_problem, replace_prior, solve_surface
 from threedfs.depth.search import cheapest_depth, search_depth
 from threedfs.depth.weights import coupling_schedule, smoothness_at
+
+_LEAST_SIDE = 64
+"""Pixels; smaller images are not halved."""
 
 
 @dataclass(frozen=True)
@@ -32,6 +36,7 @@ def optimise_depth(
     *,
     prior: str,
     iterations: int,
+    fine_iterations: int,
     photometric_weight: float,
     coupling: float,
     coupling_decay: float,
@@ -67,20 +72,34 @@ def optimise_depth(
     The search starts from the smoothest surface through the measurements and the most photo-consistent depths
     (a solve of Eq. 8 before the first iteration): the paper does not say from where.
 
-    Differs from the paper: from half of the iterations on, smoothing gives way where the surface bends sharply
+    Differs from the paper: iterations before the last few put 2x2 pixels together. Sums over pixels then have a
+    quarter of the terms and differences of second order are four times as large, so the smoothness weight is a
+    sixteenth of what it is at full resolution.
+
+    Also beyond the paper: from half of the iterations on, smoothing gives way where the surface bends sharply
     (`release_bends`), which keeps the background from being drawn towards the object around its silhouette.
     """
     schedule = coupling_schedule(coupling, coupling_decay, iterations)
-    problem = pose_problem(edge_weight, confidence, measurement_weight, prior)
-    auxiliary_depth = cheapest_depth(cost_volume, candidates)
+    fine = DepthData(cost_volume, confidence, measured_depth, measurement_weight, edge_weight)
+    halved = fine_iterations < iterations and min(confidence.shape) >= _LEAST_SIDE
+    data = halve_data(fine) if halved else fine
+    problem = pose_problem(data.edge_weight, data.confidence, data.measurement_weight, prior)
+    auxiliary_depth = cheapest_depth(data.cost_volume, candidates)
     depth = np.full(auxiliary_depth.shape, np.median(auxiliary_depth))
     residuals, steps = [], []
     for iteration in range(iterations + 1):
+        if halved and iteration > iterations - fine_iterations:
+            halved, data = False, fine
+            depth = double_depth(depth, confidence.shape)
+            problem = pose_problem(data.edge_weight, data.confidence, data.measurement_weight, prior)
+        # Over twice the distance a bend of the surface is four times as large, a slope twice.
+        growth = (2 if prior == "first_order" else 4) if halved else 1
         if break_bending > 0 and iteration > iterations // 2:
-            problem = replace_prior(problem, edge_weight * release_bends(depth, break_bending, prior), prior)
+            kept = release_bends(depth, growth * break_bending, prior)
+            problem = replace_prior(problem, data.edge_weight * kept, prior)
         if iteration:
             auxiliary_depth = search_depth(
-                cost_volume,
+                data.cost_volume,
                 candidates,
                 depth,
                 photometric_weight=photometric_weight,
@@ -91,10 +110,10 @@ def optimise_depth(
         solution = solve_surface(
             problem,
             auxiliary_depth,
-            measured_depth,
+            data.measured_depth,
             depth,
             coupling_factor=1 / (2 * schedule[max(iteration - 1, 0)]),
-            smoothness=smoothness_at(max(iteration, 1), smoothness, smoothness_growth),
+            smoothness=smoothness_at(max(iteration, 1), smoothness, smoothness_growth) / growth**2,
             tolerance=tolerance if iteration == iterations else early_tolerance,
             max_steps=max_steps,
         )

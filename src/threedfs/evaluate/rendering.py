@@ -65,13 +65,15 @@ def image_points(camera: Camera, distortion: Distortion, pixels: np.ndarray | No
     return Lens(camera, *distortion).normalise(pixels)
 
 
-def filmed_pixels(camera: Camera, distortion: Distortion, source_shape: tuple[int, int]) -> np.ndarray:
-    """Return where each pixel of an undistorted working frame lies in the frame as filmed.
+def filmed_pixels(camera: Camera, whole: Camera, distortion: Distortion, source_shape: tuple[int, int]) -> np.ndarray:
+    """Return where each pixel of an undistorted crop lies in the frame as filmed.
 
     Parameters
     ----------
-    camera, distortion : Camera, tuple of float
-        Of the undistorted working frame, and what was removed from it.
+    camera : Camera
+        Of the crop.
+    whole, distortion : Camera, tuple of float
+        Of the whole undistorted frame, at any resolution, and what was removed from it.
     source_shape : tuple of int
         (rows, columns) of the source frames.
 
@@ -82,8 +84,7 @@ def filmed_pixels(camera: Camera, distortion: Distortion, source_shape: tuple[in
         sensor by passing it on to `image_points` of the other one.
     """
     ideal = Lens(camera).normalise(np.stack(pixel_grid(camera), axis=-1))
-    pixels = Lens(camera, *distortion).denormalise(ideal)
-    return (pixels + 0.5) * (source_shape[1] / camera.width, source_shape[0] / camera.height) - 0.5
+    return Lens(whole, *distortion).resize(source_shape[1], source_shape[0]).denormalise(ideal)
 
 
 def sample_nearest(image: np.ndarray, pixels: np.ndarray, outside: float | bool) -> np.ndarray:

@@ -6,7 +6,31 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
-from threedfs.io.metrics import Metric
+
+@dataclass(frozen=True)
+class Metric:
+    """One figure.
+
+    Attributes
+    ----------
+    name : str
+        docs/formats.md lists them.
+    value : float
+    unit : str
+        "1" for a share of one.
+    dataset, sequence, method : str
+        What it was measured on; empty where it does not apply.
+    keyframe : str
+        The frame it belongs to; empty for a figure of the whole sequence.
+    """
+
+    name: str
+    value: float
+    unit: str
+    dataset: str = ""
+    sequence: str = ""
+    method: str = ""
+    keyframe: str = ""
 
 
 @dataclass(frozen=True)

@@ -50,7 +50,7 @@ def render_overlap(scores: Scores) -> str:
 
     Examples
     --------
-    >>> from threedfs.io.metrics import Metric
+    >>> from threedfs.evaluate.scores import Metric
     >>> rows = (Metric("iou_mean", 0.9, "1", "toys", "mug", "fused_sdf"),)
     >>> print(render_overlap(Scores(rows, {"mug": "toys", "can": "toys"}, ("fused_sdf",))))
                     IoU mean  median  sequences

@@ -4,17 +4,38 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
 
 from threedfs.evaluate.pose_error import align_poses
 from threedfs.frames.picture import name_video_frame
 from threedfs.geometry.similarity import Similarity
-from threedfs.io.frames import FrameStore
-from threedfs.io.given_cameras import GivenCamera
-from threedfs.poses.given import find_cameras, state_size
+from threedfs.poses.given import GivenCamera, find_cameras, state_size
 from threedfs.types import View
 
 Filmed = tuple[View, tuple[float, float]]
 """A true camera at the resolution of the source, and its distortion (k1, k2)."""
+
+
+class FrameList(Protocol):
+    """What is asked of the working frames: no image.
+
+    Attributes
+    ----------
+    names : tuple of str
+    indices : (N,) int64
+        In their source.
+    ordered : bool
+        Whether they are of a video.
+    source_shape : (int, int)
+        (H, W) of the source.
+    """
+
+    names: tuple[str, ...]
+    indices: np.ndarray
+    ordered: bool
+    source_shape: tuple[int, int]
 
 
 @dataclass(frozen=True)
@@ -36,7 +57,7 @@ class TrueCameras:
     from_scene: Similarity
 
 
-def relate_cameras(cameras: Sequence[GivenCamera], posed: Sequence[View], frames: FrameStore) -> TrueCameras:
+def relate_cameras(cameras: Sequence[GivenCamera], posed: Sequence[View], frames: FrameList) -> TrueCameras:
     """Find the true camera of each frame, and align the estimated cameras with them.
 
     Parameters
@@ -45,8 +66,7 @@ def relate_cameras(cameras: Sequence[GivenCamera], posed: Sequence[View], frames
         True ones, of frames and of views without an image.
     posed : sequence of View
         Working frames with an estimated pose.
-    frames : FrameStore
-        The names, indices and source size of the frames; no image is read.
+    frames : FrameList
 
     Raises
     ------
@@ -65,12 +85,12 @@ def relate_cameras(cameras: Sequence[GivenCamera], posed: Sequence[View], frames
     )
 
 
-def _frame_name(given: GivenCamera, frames: FrameStore) -> str:
+def _frame_name(given: GivenCamera, frames: FrameList) -> str:
     if frames.ordered and given.video_frame is not None:
         return name_video_frame(given.video_frame)
     return name_video_frame(int(given.name)) if frames.ordered and given.name.isdecimal() else given.name
 
 
-def _film(given: GivenCamera, frames: FrameStore) -> Filmed:
+def _film(given: GivenCamera, frames: FrameList) -> Filmed:
     lens = state_size(given.lens, frames.source_shape)
     return View(given.name, lens.camera, given.cam_from_world), (lens.k1, lens.k2)

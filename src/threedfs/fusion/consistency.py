@@ -76,18 +76,18 @@ def check_consistency(
     Parameters
     ----------
     views : sequence of View
-        All of one image size.
+        Their images may differ in size.
     read_depth : callable
         Gives the depth map (H, W), NaN where missing, of a view by its rank.
     rule : ComparisonRule
     threads : int
         Cores used; the result does not depend on it.
     """
-    shape = views[0].camera.shape if views else (0, 0)
-    first = compare_depth(views, read_depth, lambda _: np.ones(shape, bool), rule, threads)
+    first = compare_depth(views, read_depth, lambda rank: np.ones(views[rank].camera.shape, bool), rule, threads)
     witnesses = [np.packbits(agreement.share >= rule.witness_share) for agreement in first]
 
     def may_contradict(rank: int) -> np.ndarray:
+        shape = views[rank].camera.shape
         return np.unpackbits(witnesses[rank], count=shape[0] * shape[1]).reshape(shape).astype(bool)
 
     yield from compare_depth(views, read_depth, may_contradict, rule, threads)
@@ -113,20 +113,22 @@ def compare_depth(
     numba.set_num_threads(max(1, min(threads, numba.config.NUMBA_NUM_THREADS)))
     partners = _nearest_views(views, rule.max_views)
     wanted = range(len(views)) if targets is None else targets
+    # Maps of different sizes are compared on one canvas, beyond whose own part a map knows nothing.
+    canvas = tuple(np.max([view.camera.shape for view in views], axis=0)) if views else (0, 0)
     for start in range(0, len(wanted), _BLOCK):
         block = np.asarray(wanted[start : start + _BLOCK])
-        depth = np.stack([read_depth(i) for i in block]).astype(np.float32)
+        depth = np.stack([_extend(read_depth(i), canvas, np.nan) for i in block]).astype(np.float32)
         near_depth = np.stack([_local_minimum(item) for item in depth])
         counts = np.zeros((3, *depth.shape), np.uint8)
         free = np.full(depth.shape, np.inf, np.float32)
         for other in sorted(set().union(*(partners[i] for i in block))):
-            seen = np.asarray(read_depth(other), np.float32)
+            seen = _extend(np.asarray(read_depth(other), np.float32), canvas, np.nan)
             _compare(
                 depth,
                 near_depth,
                 seen,
                 _local_minimum(seen),
-                may_contradict(other),
+                _extend(may_contradict(other), canvas, False),
                 np.stack([_px_from_px(views[other], views[i]) for i in block]),
                 np.stack([_px_from_px(views[i], views[other]) for i in block]),
                 np.array([other in partners[i] for i in block]),
@@ -134,8 +136,9 @@ def compare_depth(
                 counts,
                 free,
             )
-        for slot in range(len(block)):
-            yield Agreement(counts[0, slot], counts[1, slot], counts[2, slot], free[slot])
+        for slot, rank in enumerate(block):
+            own = tuple(slice(0, length) for length in views[rank].camera.shape)
+            yield Agreement(*(count[slot][own] for count in counts), free[slot][own])
 
 
 def count_agreeing(
@@ -158,9 +161,12 @@ def count_agreeing(
     -------
     (H, W) uint8
     """
-    shape = views[rank].camera.shape
     rule = ComparisonRule(tolerance, max_views, 0.0)
-    (agreement,) = compare_depth(views, read_depth, lambda _: np.zeros(shape, bool), rule, targets=[rank])
+
+    def silent(other: int) -> np.ndarray:
+        return np.zeros(views[other].camera.shape, bool)
+
+    (agreement,) = compare_depth(views, read_depth, silent, rule, targets=[rank])
     return agreement.agree
 
 
@@ -194,6 +200,15 @@ def _nearest_views(views: Sequence[View], count: int) -> list[set[int]]:
     np.fill_diagonal(cosines, -np.inf)
     order = np.argsort(-cosines, axis=1, kind="stable")[:, : min(count, len(views) - 1)]
     return [set(row.tolist()) for row in order]
+
+
+def _extend(values: np.ndarray, shape: tuple[int, int], missing: float | bool) -> np.ndarray:
+    """Return a map (H, W) on a canvas of at least its size, `missing` beyond it."""
+    if values.shape == shape:
+        return values
+    canvas = np.full(shape, missing, values.dtype)
+    canvas[: values.shape[0], : values.shape[1]] = values
+    return canvas
 
 
 def _px_from_px(target: View, source: View) -> np.ndarray:

@@ -9,15 +9,15 @@ from numba import njit
 
 from threedfs.types import View, VoxelGrid
 
-Rays = tuple[np.ndarray, float, np.ndarray, np.ndarray]
-"""Origin and spacing of a grid, (3, 4) projection matrix and (fx, fy, cx, cy) of a view: what kernels work with."""
+Rays = tuple[np.ndarray, np.ndarray]
+"""(3, 4) projection of homogeneous voxel indices, and (fx, fy, cx, cy), of a view: what kernels work with."""
 
 
 def relate(grid: VoxelGrid, view: View) -> Rays:
     """Return what `measure_voxel` needs of a grid and a view."""
     camera = view.camera
     intrinsics = np.array([camera.fx, camera.fy, camera.cx, camera.cy])
-    return np.asarray(grid.origin, np.float64), float(grid.spacing), view.px_from_world, intrinsics
+    return view.px_from_world @ grid.world_from_voxel, intrinsics
 
 
 def invert_depth(depth: np.ndarray) -> np.ndarray:
@@ -73,15 +73,12 @@ def measure_voxel(rays, ix, iy, iz, inverse_depth, clip_distance, discontinuity)
 
     The distance is NaN for a voxel behind the camera, outside the image or at a pixel without depth.
     """
-    origin, spacing, p, intrinsics = rays
-    x = origin[0] + spacing * ix
-    y = origin[1] + spacing * iy
-    z = origin[2] + spacing * iz
-    depth = p[2, 0] * x + p[2, 1] * y + p[2, 2] * z + p[2, 3]
+    p, intrinsics = rays
+    depth = p[2, 0] * ix + p[2, 1] * iy + p[2, 2] * iz + p[2, 3]
     if depth <= 0:
         return np.nan, depth, 0, 0
-    u = (p[0, 0] * x + p[0, 1] * y + p[0, 2] * z + p[0, 3]) / depth
-    v = (p[1, 0] * x + p[1, 1] * y + p[1, 2] * z + p[1, 3]) / depth
+    u = (p[0, 0] * ix + p[0, 1] * iy + p[0, 2] * iz + p[0, 3]) / depth
+    v = (p[1, 0] * ix + p[1, 1] * iy + p[1, 2] * iz + p[1, 3]) / depth
     inverse = sample_inverse_depth(inverse_depth, u, v, discontinuity)
     if math.isnan(inverse):
         return np.nan, depth, 0, 0

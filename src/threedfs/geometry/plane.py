@@ -28,6 +28,13 @@ def fit_plane(points: np.ndarray, weights: np.ndarray | None = None) -> Plane:
     return Plane(normal, float(-normal @ centre))
 
 
+def axes_on(normal: np.ndarray) -> np.ndarray:
+    """Return right-handed orthonormal axes (3, 3), as rows, of which the third is a unit normal (3,)."""
+    across = np.cross(normal, np.eye(3)[np.argmin(np.abs(normal))])
+    across /= np.linalg.norm(across)
+    return np.stack([across, np.cross(normal, across), normal])
+
+
 def propose_planes(
     points: np.ndarray, probabilities: np.ndarray, count: int, generator: np.random.Generator
 ) -> tuple[np.ndarray, np.ndarray]:

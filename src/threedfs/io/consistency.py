@@ -10,11 +10,10 @@ from typing import Any
 import numpy as np
 import zarr
 
-from threedfs.checks import check_shape
 from threedfs.io.arrays import open_arrays, writing_arrays
 from threedfs.io.schema import Schema
 
-CONSISTENCY = Schema("threedfs/consistency/1", "consistency")
+CONSISTENCY = Schema("threedfs/consistency/2", "consistency")
 
 
 @dataclass(frozen=True)
@@ -45,26 +44,18 @@ class ConsistencyStore:
 
     def read(self, name: str) -> ConsistencyMap:
         """Read one keyframe."""
-        rank = self.names.index(name)
-        return ConsistencyMap(**{key: np.asarray(self.group[key][rank]) for key in ConsistencyMap.__annotations__})
+        return ConsistencyMap(
+            **{key: np.asarray(self.group[f"{key}/{name}"][...]) for key in ConsistencyMap.__annotations__}
+        )
 
 
 def write_consistency(path: Path, maps: Iterable[tuple[str, ConsistencyMap]], header: Mapping[str, Any]) -> None:
-    """Stream (keyframe, map) pairs to an artifact; never more than one is held.
-
-    Raises
-    ------
-    UserError
-        If the maps differ in size.
-    """
+    """Stream (keyframe, map) pairs to an artifact; never more than one is held. Keyframes may differ in size."""
     names: list[str] = []
-    shape = None
     with writing_arrays(path, CONSISTENCY, header) as writer:
         for name, item in maps:
-            shape = shape or item.confidence.shape
             for key, values in vars(item).items():
-                check_shape(values, shape, f"{key} of keyframe {name}")
-                writer.append(key, values, axes="keyframe, row, column")
+                writer.put(f"{key}/{name}", values, axes="row, column")
             names.append(name)
         writer.attributes["names"] = names
 

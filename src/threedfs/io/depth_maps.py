@@ -13,8 +13,8 @@ from threedfs.io.arrays import read_arrays, write_arrays
 from threedfs.io.schema import Schema
 
 DEPTH_MAP = Schema("threedfs/depth-map/1", "depth")
-EDGES = Schema("threedfs/edges/1", "edges")
-SEMIDENSE = Schema("threedfs/semidense/1", "semidense")
+EDGES = Schema("threedfs/edges/1", "cues or depth_trial")
+SEMIDENSE = Schema("threedfs/semidense/1", "cues")
 STEREO = Schema("threedfs/stereo/1", "stereo or stereo_check")
 
 

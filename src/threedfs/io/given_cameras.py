@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +24,7 @@ from threedfs.geometry.lens import Lens
 from threedfs.geometry.projection_matrix import decompose_projection
 from threedfs.geometry.rigid import invert, make_transform
 from threedfs.io.rgbd_poses import POSE_SUFFIX, Intrinsics, find_intrinsics, read_pose_files, read_pose_lines
+from threedfs.poses.given import GivenCamera
 from threedfs.types import Camera
 
 _FORMATS = (
@@ -32,28 +32,6 @@ _FORMATS = (
     "file of RGB-D Scenes v2 with the ending pose"
 )
 _OPENCV_FROM_OPENGL = np.diag([1.0, -1.0, -1.0, 1.0])
-
-
-@dataclass(frozen=True)
-class GivenCamera:
-    """One camera from a file, with or without an image of it.
-
-    Attributes
-    ----------
-    name : str
-        Stem of its image.
-    video_frame : int or None
-        Index of the video frame, where the file tells it.
-    lens : Lens
-        Intrinsics and distortion, integer pixel centres. Its camera's width and height are 0 where the format does
-        not state the size of the image: then it is that of the source.
-    cam_from_world : (4, 4) float64
-    """
-
-    name: str
-    video_frame: int | None
-    lens: Lens
-    cam_from_world: np.ndarray
 
 
 def read_given_cameras(path: Path, intrinsics: Intrinsics | None = None) -> tuple[GivenCamera, ...]:

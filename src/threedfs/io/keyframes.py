@@ -58,6 +58,11 @@ def read_keyframe(path: Path, name: str) -> Keyframe:
     return _decode(entries[name])
 
 
+def read_needs_stereo(path: Path) -> bool:
+    """Say whether depth is to be anchored by stereo matches."""
+    return bool(read_document(path, KEYFRAMES)["needs_stereo"])
+
+
 def _decode(entry: dict[str, Any]) -> Keyframe:
     return Keyframe(
         view=decode_view(entry["view"]),

@@ -5,40 +5,15 @@ from __future__ import annotations
 import csv
 import io
 from collections.abc import Iterable
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from pathlib import Path
 
 from threedfs.errors import UserError
+from threedfs.evaluate.scores import Metric
 from threedfs.io.atomic import atomic
 
 DEPTH_METHODS = "depth/"
 """How methods of the depth experiment begin, to tell them from those that cut out an object."""
-
-
-@dataclass(frozen=True)
-class Metric:
-    """One figure.
-
-    Attributes
-    ----------
-    name : str
-        docs/formats.md lists them.
-    value : float
-    unit : str
-        "1" for a share of one.
-    dataset, sequence, method : str
-        What it was measured on; empty where it does not apply.
-    keyframe : str
-        The frame it belongs to; empty for a figure of the whole sequence.
-    """
-
-    name: str
-    value: float
-    unit: str
-    dataset: str = ""
-    sequence: str = ""
-    method: str = ""
-    keyframe: str = ""
 
 
 COLUMNS = tuple(field.name for field in fields(Metric))

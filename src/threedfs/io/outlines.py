@@ -17,6 +17,7 @@ def write_outlines(
     masks: Path,
     surface: Mesh,
     views: Sequence[View],
+    whole: Mapping[str, View],
     distortion: tuple[float, float],
     source_shape: tuple[int, int],
     header: Mapping[str, Any],
@@ -32,6 +33,9 @@ def write_outlines(
     surface : Mesh
         World.
     views : sequence of View
+        Undistorted crops.
+    whole : mapping of str to View
+        Whole undistorted frames at any resolution, by name.
     distortion, source_shape
         As `draw_source_silhouette` takes them.
     header : mapping
@@ -39,4 +43,6 @@ def write_outlines(
     write_silhouettes(silhouettes, {view.name: draw_silhouette(surface, view) for view in views}, header)
     masks.mkdir(parents=True, exist_ok=True)
     for view in views:
-        write_mask(masks / f"{view.name}.png", draw_source_silhouette(surface, view, distortion, source_shape))
+        write_mask(
+            masks / f"{view.name}.png", draw_source_silhouette(surface, whole[view.name], distortion, source_shape)
+        )

@@ -10,10 +10,11 @@ from typing import Any
 import numpy as np
 
 from threedfs.io.arrays import read_arrays, write_arrays
+from threedfs.io.grids import describe_grid, grid_of
 from threedfs.io.schema import Schema
 from threedfs.types import VoxelGrid
 
-SEGMENTATION = Schema("threedfs/segmentation/1", "segment or volumetric_cut")
+SEGMENTATION = Schema("threedfs/segmentation/2", "segment or volumetric_cut")
 
 _MASK = "mask_"
 
@@ -52,8 +53,7 @@ def write_segmentation(path: Path, segmentation: Segmentation, header: Mapping[s
         arrays,
         header,
         {"voxels": {"axes": "x, y, z", "labels": "background 0, object 1, empty 2"}},
-        origin=[float(x) for x in segmentation.grid.origin],
-        spacing=float(segmentation.grid.spacing),
+        **describe_grid(segmentation.grid),
     )
 
 
@@ -62,5 +62,4 @@ def read_segmentation(path: Path) -> Segmentation:
     arrays, attributes = read_arrays(path, SEGMENTATION)
     masks = {name.removeprefix(_MASK): mask for name, mask in sorted(arrays.items()) if name.startswith(_MASK)}
     voxels = arrays["voxels"]
-    grid = VoxelGrid(np.array(attributes["origin"]), attributes["spacing"], voxels.shape)
-    return Segmentation(masks, grid, voxels, arrays["energies"], arrays["swaps"])
+    return Segmentation(masks, grid_of(attributes, voxels.shape), voxels, arrays["energies"], arrays["swaps"])

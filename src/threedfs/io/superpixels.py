@@ -10,7 +10,7 @@ from threedfs.io.arrays import read_arrays, write_arrays
 from threedfs.io.schema import Schema
 from threedfs.segment.superpixels import Superpixels
 
-SUPERPIXELS = Schema("threedfs/superpixels/1", "superpixels")
+SUPERPIXELS = Schema("threedfs/superpixels/1", "cues")
 
 
 def write_superpixels(path: Path, superpixels: Superpixels, header: Mapping[str, Any]) -> None:

@@ -11,12 +11,13 @@ import numpy as np
 
 from threedfs.io.arrays import read_arrays, write_arrays
 from threedfs.io.documents import read_document, write_document
+from threedfs.io.grids import describe_grid, grid_of
 from threedfs.io.schema import Schema
-from threedfs.types import Plane, VoxelGrid
+from threedfs.types import Box, Plane, Support, VoxelGrid
 
 SILHOUETTES = Schema("threedfs/silhouettes/1", "object, poisson, pixel_masks or cut_object")
-SUPPORT = Schema("threedfs/support/1", "locate")
-VOLUME = Schema("threedfs/volume/1", "fuse_scene, fuse_object, fuse_baseline, deform or object")
+SUPPORT = Schema("threedfs/support/2", "locate")
+VOLUME = Schema("threedfs/volume/2", "fuse_scene, fuse_object, fuse_baseline, deform or object")
 
 
 @dataclass(frozen=True)
@@ -35,26 +36,6 @@ class Volume:
     seen: np.ndarray
 
 
-@dataclass(frozen=True)
-class Support:
-    """Where the object stands.
-
-    Attributes
-    ----------
-    plane : Plane
-        The support surface; its positive side holds the object and the cameras.
-    low, high : (3,) float64
-        Box of the object, world, scene units.
-    figures : mapping of str to float
-        What the search for them found (inlier share, ...).
-    """
-
-    plane: Plane
-    low: np.ndarray
-    high: np.ndarray
-    figures: Mapping[str, float]
-
-
 def write_volume(path: Path, volume: Volume, header: Mapping[str, Any]) -> None:
     """Write a volume."""
     write_arrays(
@@ -64,16 +45,14 @@ def write_volume(path: Path, volume: Volume, header: Mapping[str, Any]) -> None:
         header,
         {"sdf": {"sign": "positive in empty space", "unit": "clip distance"}},
         axes="x, y, z",
-        origin=[float(x) for x in volume.grid.origin],
-        spacing=float(volume.grid.spacing),
+        **describe_grid(volume.grid),
     )
 
 
 def read_volume(path: Path) -> Volume:
     """Read a volume."""
     arrays, attributes = read_arrays(path, VOLUME)
-    grid = VoxelGrid(np.array(attributes["origin"]), attributes["spacing"], arrays["sdf"].shape)
-    return Volume(grid, arrays["sdf"], arrays["seen"])
+    return Volume(grid_of(attributes, arrays["sdf"].shape), arrays["sdf"], arrays["seen"])
 
 
 def write_support(path: Path, support: Support, header: Mapping[str, Any]) -> None:
@@ -81,7 +60,7 @@ def write_support(path: Path, support: Support, header: Mapping[str, Any]) -> No
     content = {
         "unit": "scene unit",
         "plane": {"normal": support.plane.normal.tolist(), "offset": float(support.plane.offset)},
-        "box": {"low": support.low.tolist(), "high": support.high.tolist()},
+        "box": {name: getattr(support.box, name).tolist() for name in ("axes", "low", "high")},
         "figures": dict(support.figures),
     }
     write_document(path, SUPPORT, content, header)
@@ -91,8 +70,8 @@ def read_support(path: Path) -> Support:
     """Read support.json."""
     content = read_document(path, SUPPORT)
     plane = Plane(np.array(content["plane"]["normal"]), content["plane"]["offset"])
-    box = content["box"]
-    return Support(plane, np.array(box["low"]), np.array(box["high"]), content["figures"])
+    box = Box(*(np.array(content["box"][name]) for name in ("axes", "low", "high")))
+    return Support(plane, box, content["figures"])
 
 
 def write_silhouettes(path: Path, silhouettes: Mapping[str, np.ndarray], header: Mapping[str, Any]) -> None:

@@ -8,6 +8,7 @@ from scipy.sparse.csgraph import connected_components
 from skimage.measure import marching_cubes
 
 from threedfs.errors import UserError
+from threedfs.geometry.grid import world_from_index
 from threedfs.types import Mesh, VoxelGrid
 
 _LEAST = 1e-3  # the field keeps so far from zero at voxels, or triangles shrink to nothing there
@@ -30,12 +31,14 @@ def extract_surface(sdf: np.ndarray, grid: VoxelGrid) -> Mesh:
         If the field is negative nowhere.
     """
     if not (sdf < 0).any():
-        raise UserError("The object's field is positive everywhere, so it has no surface; lower object.clearance.")
+        raise UserError(
+            "The object's field is positive everywhere, so it has no surface; lower locate_object.clearance."
+        )
     away = np.where(sdf < 0, np.minimum(sdf, -_LEAST), np.maximum(sdf, _LEAST))
     padded = np.pad(away, 1, constant_values=1)
     # Lewiner's variant, the default, puts four triangles on an edge where clipped values tie.
     vertices, faces, _, _ = marching_cubes(padded, 0.0, gradient_direction="ascent", method="lorensen")
-    vertices = grid.origin + grid.spacing * (vertices.astype(np.float64) - 1)
+    vertices = world_from_index(grid, vertices.astype(np.float64) - 1)
     faces = faces.astype(np.int64)
     if enclosed_volume(Mesh(vertices, faces)) < 0:
         faces = faces[:, ::-1]

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import numpy as np
-
+from threedfs.geometry.plane import axes_on
 from threedfs.types import Mesh, Plane
 
 
@@ -24,10 +23,7 @@ def stand_up(mesh: Mesh, plane: Plane, height: float) -> Mesh:
     Mesh
         Its lowest point at z = 0, the middle of its box at x = y = 0; not mirrored.
     """
-    across = np.cross(plane.normal, np.eye(3)[np.argmin(np.abs(plane.normal))])
-    across /= np.linalg.norm(across)
-    axes = np.stack([across, np.cross(plane.normal, across), plane.normal])
-    vertices = mesh.vertices @ axes.T
+    vertices = mesh.vertices @ axes_on(plane.normal).T
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     middle = (low + high) / 2
     vertices = (vertices - [middle[0], middle[1], low[2]]) * (height / (high[2] - low[2]))

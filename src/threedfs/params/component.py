@@ -20,23 +20,3 @@ class ComponentSettings:
         unit="viewing distance",
         exclusive_minimum=0.0,
     )
-
-
-@dataclass(frozen=True)
-class StandingSettings(ComponentSettings):
-    """What parts the object from the support on its own grid."""
-
-    clearance: float = parameter(
-        1.0,
-        "least height above the plane from which voxels may belong to the object",
-        unit="voxel",
-        symbol="tau",
-        equation="Sec. 3.4.2",
-        minimum=0.0,
-    )
-    noise_clearance: float = parameter(
-        2.0,
-        "least height likewise, for surfaces rougher than a voxel",
-        unit="standard deviation of the support from its plane",
-        minimum=0.0,
-    )

@@ -47,6 +47,11 @@ class DepthParams:
         maximum=1,
     )
     iterations: int = parameter(8, "rounds of search and smoothing", minimum=1, maximum=33)
+    fine_iterations: int = parameter(
+        1,
+        "last of these rounds at full resolution; those before it on 2x2 pixels put together",
+        minimum=1,
+    )
     photometric_weight: float = parameter(
         100.0, "weight of the photometric error in the search", symbol="lambda_c", equation="Eq. 6", exclusive_minimum=0
     )

@@ -35,22 +35,22 @@ class LocateParams(ComponentSettings):
         0.15, "least share of the nearby upward-facing surface on the support plane", minimum=0.0, maximum=1.0
     )
     plane_candidates: int = parameter(4000, "planes tried", minimum=1)
-    clearance: float = parameter(
-        1.5,
-        "height above the plane from which voxels may belong to the object",
-        unit="voxel",
-        symbol="tau",
-        equation="Sec. 3.4.2",
-        minimum=0.0,
-    )
     clearance_doublings: int = parameter(
         3,
-        "times that clearance is doubled while the object is joined with what lies at the border of the region",
+        "times that locate_object.clearance is doubled while the object is joined with the border of the region",
         minimum=0,
         maximum=8,
     )
     bridge: int = parameter(
         1, "pieces up to twice so far apart count as one object when its box is drawn", unit="voxel", minimum=0
+    )
+    box_reach: float = parameter(
+        0.4,
+        "how far around the box images are asked whether they show more of the object, which then enlarges the box; 0: "
+        "they are not asked (paper)",
+        unit="longest side of the box",
+        minimum=0.0,
+        maximum=2.0,
     )
     box_margin: float = parameter(
         0.35, "what the box exceeds the object by, both sides together", unit="longest side of the object", minimum=0.0

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from threedfs.params.component import StandingSettings
 from threedfs.params.field import parameter
 
 
 @dataclass(frozen=True)
-class SegmentParams(StandingSettings):
+class SegmentParams:
     """How superpixels and voxels are labelled together."""
 
     field: str = parameter(
@@ -145,6 +144,11 @@ class SegmentParams(StandingSettings):
         "surface, or those that hold its semi-dense points (paper)",
         equation="Sec. 3.4.1",
         choices=("surface", "semidense"),
+    )
+    point_deviation: float = parameter(
+        0.05,
+        "largest relative standard deviation of the semi-dense points that are linked; acts with links: semidense",
+        minimum=0.0,
     )
     link_weight: float = parameter(
         0.2, "cost of different labels at linked nodes (paper: 1)", equation="Sec. 3.4.3", minimum=0.0

@@ -11,8 +11,8 @@ from threedfs.params.field import parameter
 class SuperpixelsParams:
     """How a keyframe is split into superpixels."""
 
-    count: int = parameter(
-        6000, "superpixels of an image, about (paper: 2000)", equation="Sec. 3.4", minimum=10, maximum=100000
+    area: float = parameter(
+        50.0, "mean area of a superpixel (paper: 2000 in an image)", unit="pixel", equation="Sec. 3.4", minimum=4.0
     )
     compactness: float = parameter(
         10.0,

@@ -3,13 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from threedfs.errors import UserError
 from threedfs.geometry.lens import Lens
-from threedfs.io.given_cameras import GivenCamera
+
+
+@dataclass(frozen=True)
+class GivenCamera:
+    """One camera from a file, with or without an image of it.
+
+    Attributes
+    ----------
+    name : str
+        Stem of its image.
+    video_frame : int or None
+        Index of the video frame, where the file tells it.
+    lens : Lens
+        Intrinsics and distortion, integer pixel centres. Its camera's width and height are 0 where the format does
+        not state the size of the image: then it is that of the source.
+    cam_from_world : (4, 4) float64
+    """
+
+    name: str
+    video_frame: int | None
+    lens: Lens
+    cam_from_world: np.ndarray
 
 
 def find_cameras(

@@ -10,7 +10,7 @@ from pathlib import Path
 from threedfs.evaluate.costs import cost_figures
 from threedfs.evaluate.experiment_tables import experiment_tables, group_experiments
 from threedfs.evaluate.plots import plot_depth_experiment, plot_overlap
-from threedfs.evaluate.scores import Scores
+from threedfs.evaluate.scores import Metric, Scores
 from threedfs.evaluate.summary import render_overlap, render_summary
 from threedfs.evaluate.table import Table, render_markdown
 from threedfs.evaluate.tables import (
@@ -23,7 +23,7 @@ from threedfs.evaluate.tables import (
 )
 from threedfs.evaluate.variant_tables import variant_tables
 from threedfs.io.atomic import atomic
-from threedfs.io.metrics import Metric, read_metrics, write_metrics
+from threedfs.io.metrics import read_metrics, write_metrics
 from threedfs.params.schema import STAGES
 from threedfs.run_end.logs import find_failures, read_actions
 

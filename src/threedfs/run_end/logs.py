@@ -14,12 +14,12 @@ _REFUSED = "threedfs: "
 def find_failures(results: Path, since: float) -> list[Failure]:
     """Find the jobs that began after a time and did not end well, in the order of their logs' names.
 
-    A job that ended well has told, in the last line of its log, the action that it did.
+    A job that ended well has told, in the last lines of its log, the actions that it did.
 
     Parameters
     ----------
     results : Path
-        Holds the logs: `SEQUENCE/logs/STAGE.log`, or `SEQUENCE/logs/STAGE/ITEM.log` for one keyframe or method.
+        Holds the logs: `SEQUENCE/logs/RULE.log`, or `SEQUENCE/logs/RULE/ITEM.log` for one method.
     since : float
         Seconds since the epoch.
     """
@@ -28,24 +28,30 @@ def find_failures(results: Path, since: float) -> list[Failure]:
         lines = _read_lines(log)
         if log.stat().st_mtime >= since and not (lines and lines[-1].startswith(_DONE)):
             sequence, _, place = log.relative_to(results).with_suffix("").as_posix().partition("logs/")
-            stage, _, item = place.partition("/")
-            failures.append(Failure(sequence.rstrip("/"), stage, item, _explain(lines, log)))
+            rule, _, item = place.partition("/")
+            refused = [line.removeprefix(_REFUSED) for line in lines if line.startswith(_REFUSED)]
+            failures += [_read_refusal(line, sequence.rstrip("/"), item) for line in refused]
+            if not refused:
+                failures.append(Failure(sequence.rstrip("/"), rule, item, _explain(lines, log)))
     return failures
 
 
 def read_actions(folder: Path, store: Path) -> list[dict]:
-    """Read the records of the actions that the jobs of a sequence did, from the ends of its logs."""
-    ends = {lines[-1] for lines in map(_read_lines, _find_logs(folder)) if lines}
-    keys = sorted(end.removeprefix(_DONE) for end in ends if end.startswith(_DONE))
+    """Read the records of the actions that the jobs of a sequence did, which their logs name."""
+    lines = (line for log in _find_logs(folder) for line in _read_lines(log))
+    keys = sorted(line.removeprefix(_DONE) for line in lines if line.startswith(_DONE))
     records = (store / "actions" / key[:2] / f"{key}.json" for key in keys)
     return [json.loads(record.read_text()) for record in records if record.is_file()]
 
 
+def _read_refusal(line: str, sequence: str, item: str) -> Failure:
+    """Read `STAGE of SEQUENCE ITEM: sentence`; what the log's place tells of the item goes before."""
+    label, _, sentence = line.partition(": ")
+    stage, _, what = label.partition(" of ")
+    return Failure(sequence, stage, item or what.partition(" ")[2], sentence.removeprefix(f"{stage}: "))
+
+
 def _explain(lines: list[str], log: Path) -> str:
-    for line in lines:
-        if line.startswith(_REFUSED):  # threedfs: STAGE of SEQUENCE ITEM: sentence
-            label, _, sentence = line.removeprefix(_REFUSED).partition(": ")
-            return sentence.removeprefix(f"{label.partition(' of ')[0]}: ")
     if any(line.startswith("Traceback ") for line in lines):
         return f"{lines[-1]} (see {log})"
     return f"ended without telling why, as when it is killed or memory runs out (see {log})"

@@ -9,11 +9,9 @@ import cv2
 import numpy as np
 from scipy import ndimage
 
-from threedfs.errors import UserError
-from threedfs.fusion.fixation import find_fixation, viewing_distance
+from threedfs.geometry.grid import world_from_index
 from threedfs.geometry.projection import backproject_map
-from threedfs.object.component import choose_component, mark_points
-from threedfs.object.field import add_foot, height_above
+from threedfs.locate.find import Located
 from threedfs.segment.color_model import lab_image
 from threedfs.segment.energy import BACKGROUND, OBJECT
 from threedfs.segment.evidence import ImageEvidence, VoxelEvidence
@@ -29,7 +27,7 @@ from threedfs.segment.outline import draw_voxels
 from threedfs.segment.pairwise import link_voxels, superpixel_weights
 from threedfs.segment.superpixels import Superpixels
 from threedfs.segment.table import match_table, picture_table
-from threedfs.types import Plane, View, VoxelGrid
+from threedfs.types import Box, View
 
 _SURE_LEVEL = -0.5
 """Field of voxels that hide the support surface for certain."""
@@ -45,32 +43,24 @@ class Scene:
 
     Attributes
     ----------
-    grid : VoxelGrid
-    sdf, seen : (nx, ny, nz)
-        The field, and how many views see each voxel.
-    plane : Plane
-        The support surface.
-    low, high : (3,) float64
-        The object's box.
-    clearance : float
-        Least height of the object above the plane, scene units.
+    located : Located
+        The object in the field, and the plane that it stands on.
+    sdf : (nx, ny, nz) float32
+        The field.
+    box : Box
+        The object's, standing on the plane.
     views : mapping of str to View
-        By the name of the keyframe, like images (H, W, 3) uint8 RGB, superpixels, depth (H, W), its confidence (H, W)
-        and semi-dense depth (H, W), NaN where there is none.
-    valid : (H, W) bool
-        Pixels that show the scene.
+        By the name of the keyframe, like images (H, W, 3) uint8 RGB, which of their pixels show the scene (H, W) bool,
+        superpixels, depth (H, W), its confidence (H, W) and semi-dense depth (H, W), NaN where there is none; the last
+        only if superpixels are linked by it.
     """
 
-    grid: VoxelGrid
+    located: Located
     sdf: np.ndarray
-    seen: np.ndarray
-    plane: Plane
-    low: np.ndarray
-    high: np.ndarray
-    clearance: float
+    box: Box
     views: Mapping[str, View]
     images: Mapping[str, np.ndarray]
-    valid: np.ndarray
+    valid: Mapping[str, np.ndarray]
     superpixels: Mapping[str, Superpixels]
     depth: Mapping[str, np.ndarray]
     confidence: Mapping[str, np.ndarray]
@@ -81,7 +71,6 @@ class Scene:
 class GatherRule:
     """How evidence is gathered; `SegmentParams` says more of each value."""
 
-    object_reach: float
     outer_level: float
     outer_height: float
     outer_margin: int
@@ -113,41 +102,20 @@ class Bounds:
 
 
 def gather_voxels(scene: Scene, rule: GatherRule) -> tuple[VoxelEvidence, Bounds]:
-    """Find the object in the fused field; return its first labels and what bounds it.
+    """Return the voxels' first labels, and what bounds the object.
 
-    Differs from the paper: voxels are above the support from `clearance` on, which follows the plane's noise (paper:
-    0.05 of the spread of its points); the object's foot below it is part of both estimates; and the under-estimate lies
-    within the component that is the object.
-
-    Raises
-    ------
-    UserError
-        If the field holds no solid with semi-dense points above the support plane.
+    Differs from the paper: the under-estimate lies within the component that is the object.
     """
-    views = list(scene.views.values())
-    fixation = find_fixation(views, (scene.low + scene.high) / 2)
-    height = height_above(scene.plane, scene.grid)
-    high = height > scene.clearance
-    holds = np.zeros(scene.grid.shape, bool)
-    for name, depth in scene.semidense.items():
-        mark_points(scene.grid, backproject_map(scene.views[name], depth)[np.isfinite(depth)], holds)
-    solid = (scene.sdf < 0) & (scene.seen > 0)
-    reach = rule.object_reach * viewing_distance(views, fixation)
-    chosen = choose_component(solid & high, scene.grid, holds & high, fixation, reach=reach)
-    if chosen is None:
-        raise UserError(
-            "segment: expected a solid above the support plane with semi-dense points on it, found none; the depth "
-            "maps disagree on the object (shiny, transparent or without texture?), or segment.clearance is above it."
-        )
-    guess = add_foot(chosen.voxels, height, scene.grid, scene.plane, scene.clearance) & (height > 0)
-    raised = scene.clearance + rule.outer_height * scene.grid.spacing
+    located, grid = scene.located, scene.located.grid
+    guess, height = located.voxels, located.height
+    raised = located.least_height + rule.outer_height * grid.spacing
     outer = bound_object(scene.sdf, guess, height > raised, rule.outer_level, rule.outer_margin)
     inner = outer & guess & (scene.sdf < rule.inner_level)
-    hides = guess & (scene.sdf < _SURE_LEVEL) & high
+    hides = guess & (scene.sdf < _SURE_LEVEL) & (height > located.least_height)
     normalised = normalised_height(height)
     fixed = fix_voxels(scene.sdf, normalised, empty_level=rule.empty_level, deepest=rule.deepest)
     first = first_voxel_labels(scene.sdf, guess, fixed)
-    return VoxelEvidence(scene.grid, scene.sdf, normalised, fixed, first), Bounds(outer, guess, inner, hides)
+    return VoxelEvidence(grid, scene.sdf, normalised, fixed, first), Bounds(outer, guess, inner, hides)
 
 
 def gather_images(
@@ -165,18 +133,17 @@ def gather_images(
         Draws first labels, where they are random.
     """
     outer, guess, inner, hides = (
-        draw_voxels(voxels, scene.grid, scene.views)
+        draw_voxels(voxels, scene.located.grid, scene.views)
         for voxels in (bounds.outer, bounds.guess, bounds.inner, bounds.hides)
     )
     if rule.fill_outer:
         outer = {name: ndimage.binary_fill_holes(mask) for name, mask in outer.items()}
-    reach = rule.table_reach * (scene.high - scene.low).max()
     table = None
     if rule.table:
         covered = {name: cv2.dilate(mask.astype(np.uint8), np.ones((5, 5))) > 0 for name, mask in hides.items()}
-        low, high = scene.low - reach, scene.high + reach
-        solid = scene.grid.origin + scene.grid.spacing * np.argwhere(bounds.hides)
-        table = picture_table(scene.images, scene.views, covered, scene.valid, scene.plane, solid, low, high)
+        around = scene.box.grow(rule.table_reach * scene.box.longest)
+        solid = world_from_index(scene.located.grid, np.argwhere(bounds.hides))
+        table = picture_table(scene.images, scene.views, covered, scene.valid, scene.located.plane, solid, around)
     evidence = {}
     for name, view in scene.views.items():
         superpixels = scene.superpixels[name]
@@ -186,9 +153,9 @@ def gather_images(
             guessed = rng.random(superpixels.count) < 0.5
         first = np.where(decided == UNDECIDED, np.where(guessed, OBJECT, BACKGROUND), decided).astype(np.uint8)
         points = backproject_map(view, scene.depth[name])
-        outside = np.isfinite(scene.depth[name]) & ~((points >= scene.low) & (points <= scene.high)).all(axis=-1)
+        outside = np.isfinite(scene.depth[name]) & ~scene.box.contains(points)
         pairs, weight = _link(scene, volume, name, points, rule)
-        middle = view.cam_from_world[2] @ np.append((scene.low + scene.high) / 2, 1)
+        middle = view.cam_from_world[2] @ np.append(scene.box.centre, 1)
         evidence[name] = ImageEvidence(
             view,
             scene.images[name],
@@ -199,7 +166,7 @@ def gather_images(
             rule.pair_weight * superpixel_weights(superpixels, rule.pair_falloff, rule.by_mean),
             pairs,
             weight,
-            rule.silhouette_ramp * scene.grid.spacing * view.camera.fx / middle,
+            rule.silhouette_ramp * scene.located.grid.spacing * view.camera.fx / middle,
             match_table(lab_image(scene.images[name]), *table.predict(view)) if table else None,
         )
     return evidence
@@ -219,7 +186,7 @@ def _link(scene, volume, name, points, rule):
         points = backproject_map(scene.views[name], scene.semidense[name])
         shown &= np.isfinite(scene.semidense[name])
     rows, columns = np.nonzero(shown)
-    pairs, share = link_voxels(scene.superpixels[name], points[rows, columns], rows, columns, scene.grid)
+    pairs, share = link_voxels(scene.superpixels[name], points[rows, columns], rows, columns, scene.located.grid)
     kept = volume.fixed.reshape(-1)[pairs[:, 1]] == UNDECIDED
     if rule.surface_links:
         near = scene.sdf.reshape(-1)[pairs[:, 1]]

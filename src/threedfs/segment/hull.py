@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 from scipy import ndimage
 
+from threedfs.geometry.grid import voxel_places
 from threedfs.segment.lookup import nearest_pixels
 from threedfs.segment.outline import depth_inside, draw_voxels
 from threedfs.types import View, VoxelGrid
@@ -28,7 +29,7 @@ def fit_masks(
     allowed: np.ndarray,
     masks: Mapping[str, np.ndarray],
     views: Mapping[str, View],
-    valid: np.ndarray,
+    valid: Mapping[str, np.ndarray],
     grid: VoxelGrid,
     *,
     ramp: float,
@@ -52,7 +53,7 @@ def fit_masks(
         Voxels that may be filled.
     masks : mapping of str to (H, W) bool
     views : mapping of str to View
-    valid : (H, W) bool
+    valid : mapping of str to (H, W) bool
         Pixels that show the scene; where they end is no outline of the object.
     grid : VoxelGrid
     ramp : float
@@ -63,7 +64,7 @@ def fit_masks(
         Views that show a voxel on a gap before it is filled.
     """
     places = np.flatnonzero(allowed)
-    centres = grid.origin + grid.spacing * np.stack(np.unravel_index(places, grid.shape), axis=1)
+    centres = voxel_places(grid, places)
     middle = np.append(centres[solid.reshape(-1)[places]].mean(axis=0) if solid.any() else centres.mean(axis=0), 1)
     covered = draw_voxels(solid, grid, views)
     distances = np.full((len(views), len(places)), -_STEPS, np.int16)
@@ -75,7 +76,7 @@ def fit_masks(
         row, column = nearest_pixels(view, centres)
         # world length of a pixel, per depth, in ramps of the hull's field
         share = 1 / (view.camera.fx * grid.spacing * ramp)
-        outside = -depth_inside(mask | ~valid)
+        outside = -depth_inside(mask | ~valid[name])
         _measure(centres, view.cam_from_world[2], row, column, outside, share, distances[rank])
         gap = mask & ~covered[name]
         footprint = max(1, int(np.ceil(view.camera.fx * grid.spacing / (view.cam_from_world[2] @ middle))))

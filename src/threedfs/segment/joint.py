@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from threedfs.errors import UserError
+from threedfs.geometry.grid import voxel_places
 from threedfs.segment.alpha_expansion import expand
 from threedfs.segment.color_model import ColorModel, fit_color_model, lab_from_rgb, truncate
 from threedfs.segment.energy import BACKGROUND, EMPTY, OBJECT, LabelGraph, energy, fold_given
@@ -207,8 +208,7 @@ class _Nodes:
         self.open_centres = np.empty((0, 3))
         if volume is not None:
             voxels = self._open[len(self._open_superpixels) :] - self._superpixels
-            place = np.stack(np.unravel_index(voxels, volume.grid.shape), axis=1)
-            self.open_centres = volume.grid.origin + volume.grid.spacing * place
+            self.open_centres = voxel_places(volume.grid, voxels)
             self._sdf, self._normalised = (a.reshape(-1)[voxels] for a in (volume.sdf, volume.normalised))
 
     def first_labels(self) -> np.ndarray:

@@ -9,6 +9,7 @@ import numpy as np
 from scipy import ndimage
 from skimage.measure import marching_cubes
 
+from threedfs.geometry.grid import world_from_index
 from threedfs.object.silhouettes import draw_silhouette
 from threedfs.types import Mesh, View, VoxelGrid
 
@@ -26,7 +27,7 @@ def surround_voxels(voxels: np.ndarray, grid: VoxelGrid) -> Mesh:
     padded = np.pad(voxels[box], 1).astype(np.float32)
     vertices, faces, _, _ = marching_cubes(padded, 0.5, gradient_direction="ascent", method="lorensen")
     start = np.array([part.start for part in box]) - 1
-    return Mesh(grid.origin + grid.spacing * (vertices.astype(np.float64) + start), faces.astype(np.int64))
+    return Mesh(world_from_index(grid, vertices.astype(np.float64) + start), faces.astype(np.int64))
 
 
 def draw_voxels(voxels: np.ndarray, grid: VoxelGrid, views: Mapping[str, View]) -> dict[str, np.ndarray]:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from skimage.segmentation import slic
+
+from threedfs.segment.slic import cluster_pixels
 
 
 @dataclass(frozen=True)
@@ -54,7 +55,7 @@ class Superpixels:
 
 
 def split_image(
-    image: np.ndarray, valid: np.ndarray, strength: np.ndarray, *, count: int, compactness: float
+    image: np.ndarray, valid: np.ndarray, strength: np.ndarray, *, area: float, compactness: float
 ) -> Superpixels:
     """Split an image into superpixels by SLIC.
 
@@ -66,15 +67,12 @@ def split_image(
         Pixels that show the scene; others belong to no superpixel.
     strength : (H, W) float32
         Contour strength in [0, 1].
-    count : int
-        About how many there will be.
+    area : float
+        Of a superpixel on average, about, pixels.
     compactness : float
         Lab units of colour difference that weigh as much as the distance between two superpixels.
     """
-    index = slic(image, n_segments=count, compactness=compactness, start_label=0).astype(np.int64)
-    _, numbers = np.unique(index[valid], return_inverse=True)
-    index = np.full(valid.shape, -1, np.int32)
-    index[valid] = numbers
+    index = cluster_pixels(image, valid, area=area, compactness=compactness)
     return Superpixels(index, *_measure_boundaries(index, strength))
 
 

@@ -10,7 +10,7 @@ import numpy as np
 from numba import njit
 
 from threedfs.segment.color_model import TableMatch, lab_image
-from threedfs.types import Plane, View
+from threedfs.types import Box, Plane, View
 
 _LEAST_VIEWS = 3
 """Views that must show a spot uncovered: of two that differ, neither is known to be right."""
@@ -88,11 +88,10 @@ def picture_table(
     images: Mapping[str, np.ndarray],
     views: Mapping[str, View],
     covered: Mapping[str, np.ndarray],
-    valid: np.ndarray,
+    valid: Mapping[str, np.ndarray],
     plane: Plane,
     solid: np.ndarray,
-    low: np.ndarray,
-    high: np.ndarray,
+    box: Box,
 ) -> TablePicture:
     """Take a picture of the support plane, seen from above, out of all views.
 
@@ -105,18 +104,19 @@ def picture_table(
     views : mapping of str to View
     covered : mapping of str to (H, W) bool
         Pixels that may show the object.
-    valid : (H, W) bool
+    valid : mapping of str to (H, W) bool
+        Pixels that show the scene.
     plane : Plane
     solid : (N, 3) float64
         World points inside the object.
-    low, high : (3,) float64
-        Box around what the picture is needed for, world.
+    box : Box
+        Around what the picture is needed for, standing on the plane; the picture lies along its sides.
     """
-    world_from_picture, size = _lay_out(plane, low, high, views)
+    world_from_picture, size = _lay_out(plane, box, views)
     colors, shown = [], []
     for name, view in views.items():
         picture_from_image = np.linalg.inv(view.px_from_world @ world_from_picture)
-        clear = (valid & ~covered[name]).astype(np.float32)
+        clear = (valid[name] & ~covered[name]).astype(np.float32)
         colors.append(cv2.warpPerspective(lab_image(images[name]), picture_from_image, size, flags=cv2.INTER_LINEAR))
         shown.append(cv2.warpPerspective(clear, picture_from_image, size, flags=cv2.INTER_LINEAR) > 0.99)
         shown[-1] &= _in_front(view, world_from_picture, size)
@@ -178,15 +178,11 @@ def _stand_on(world_from_picture, solid, shape):
     return cv2.dilate(beneath, np.ones((_AROUND, _AROUND), np.uint8)) > 0
 
 
-def _lay_out(plane, low, high, views):
+def _lay_out(plane, box, views):
     """Return (4, 3) world from picture, and the picture's (width, height), for the part of the plane in a box."""
-    across = np.cross(plane.normal, np.eye(3)[np.argmin(np.abs(plane.normal))])
-    across /= np.linalg.norm(across)
-    along = np.cross(plane.normal, across)
-    corners = np.stack(np.meshgrid(*zip(low, high, strict=True), indexing="ij"), axis=-1).reshape(-1, 3)
-    corners = corners - plane.distance(corners)[:, None] * plane.normal
-    spans = [(float((corners @ axis).min()), float((corners @ axis).max())) for axis in (across, along)]
-    middle = corners.mean(axis=0)
+    across, along = box.axes[:2]
+    spans = list(zip(box.low[:2].tolist(), box.high[:2].tolist(), strict=True))
+    middle = box.centre - plane.distance(box.centre) * plane.normal
     nearest = min(float(np.linalg.norm(view.centre - middle)) for view in views.values())
     pixel = nearest / max(view.camera.fx for view in views.values())
     pixel = max(pixel, max(stop - start for start, stop in spans) / _LONGEST)

@@ -39,7 +39,7 @@ def estimate_semidense(
     keyframe: Keyframe,
     image: np.ndarray,
     valid: np.ndarray,
-    neighbours: Iterable[tuple[View, np.ndarray]],
+    neighbours: Iterable[tuple[View, np.ndarray, np.ndarray]],
     sparse_points: np.ndarray,
     search: SearchRule,
     rule: FusionRule,
@@ -55,9 +55,10 @@ def estimate_semidense(
     keyframe : Keyframe
     image : (H, W, 3) uint8
     valid : (H, W) bool
-        Pixels that show the scene, in every frame.
-    neighbours : iterable of (View, (H, W, 3) uint8)
-        In the order in which they are to observe; taken one at a time.
+        Pixels that show the scene.
+    neighbours : iterable of (View, (H, W, 3) uint8, (H, W) bool)
+        With their image, of any size, and its pixels that show the scene, in the order in which they are to observe;
+        taken one at a time.
     sparse_points : (P, 3) float64
         Points that the keyframe sees, world.
     search : SearchRule
@@ -83,14 +84,14 @@ def estimate_semidense(
         rule.prior_spread,
     )
     state = np.stack([mean, variance, np.zeros_like(mean), np.zeros_like(mean)])
-    for view, other in neighbours:
+    for view, other, other_valid in neighbours:
         observe_neighbour(
             grey,
             gradient_u,
             gradient_v,
             searched,
             to_grey(other),
-            valid,
+            other_valid,
             relate(keyframe.view, view),
             search,
             bounds,

@@ -30,6 +30,10 @@ _MIN_SPAN = 6.0
 """Least length of the searched segment, in pixels of the neighbour."""
 
 
+WORK = math.ceil(_MAX_SPAN) + 8
+"""Scratch of one search: places along the longest segment, and what the window takes beyond its ends."""
+
+
 class SearchRule(NamedTuple):
     """What counts as a match; see `SemidenseParams` for each value."""
 
@@ -51,14 +55,51 @@ def _sample(image, u, v):
 
 
 @njit(cache=True)
-def _is_known(valid, u, v):
-    """Say whether the four pixels that `_sample` reads lie on the image and are valid."""
-    height, width = valid.shape
-    if not (0 <= u < width - 1 and 0 <= v < height - 1):
-        return False
-    column, row = int(u), int(v)
-    upper = valid[row, column] and valid[row, column + 1]
-    return upper and valid[row + 1, column] and valid[row + 1, column + 1]
+def _sample_line(image, u, v, step_u, step_v, samples):
+    """Sample at equal steps from (u, v) on; NaN outside of the image and beside pixels that are NaN."""
+    height, width = image.shape
+    for k in range(len(samples)):
+        at_u, at_v = u + k * step_u, v + k * step_v
+        if 0 <= at_u < width - 1 and 0 <= at_v < height - 1:
+            samples[k] = _sample(image, at_u, at_v)
+        else:
+            samples[k] = np.nan
+
+
+@njit(cache=True)
+def _compare(samples, template, differences):
+    """Fill in for each place the squared difference to the template, whose mean is 0, less that of means.
+
+    Returns
+    -------
+    seen, best : int
+        Places at which all samples are known, and the first of those of least difference; -1 without any. The others'
+        difference is infinite.
+    """
+    t0, t1, t2, t3, t4 = template
+    of_template = t0 * t0 + t1 * t1 + t2 * t2 + t3 * t3 + t4 * t4
+    seen, best = 0, -1
+    least = np.inf
+    for place in range(len(differences)):
+        s0, s1, s2, s3, s4 = samples[place : place + 5]
+        total = s0 + s1 + s2 + s3 + s4
+        square = s0 * s0 + s1 * s1 + s2 * s2 + s3 * s3 + s4 * s4
+        product = s0 * t0 + s1 * t1 + s2 * t2 + s3 * t3 + s4 * t4
+        difference = max(square - 0.2 * total * total - 2 * product + of_template, 0.0)
+        if total != total:
+            difference = np.inf
+        else:
+            seen += 1
+            if difference < least:
+                least = difference
+                best = place
+        differences[place] = difference
+    return seen, best
+
+
+@njit(cache=True)
+def _distance(x0, y0, x1, y1):
+    return math.sqrt((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0))
 
 
 @njit(cache=True)
@@ -90,7 +131,7 @@ def _refine(differences, place):
 
 
 @njit(cache=True)
-def search_line(grey, gradient_u, gradient_v, other, other_valid, u, v, low, high, bounds, geometry, rule):
+def search_line(grey, gradient_u, gradient_v, other, u, v, low, high, bounds, geometry, rule, work):
     """Search the inverse depth of one pixel between `low` and `high`.
 
     Five samples along the epipolar line are compared by the sum of squared differences, less that of their
@@ -102,8 +143,7 @@ def search_line(grey, gradient_u, gradient_v, other, other_valid, u, v, low, hig
     grey, gradient_u, gradient_v : (H, W) float32
         Keyframe, and its gradient.
     other : (H2, W2) float32
-        Neighbour.
-    other_valid : (H2, W2) bool
+        Neighbour; NaN where it shows nothing.
     u, v : int
         Pixel.
     low, high : float
@@ -112,6 +152,8 @@ def search_line(grey, gradient_u, gradient_v, other, other_valid, u, v, low, hig
         Least and greatest inverse depth there can be.
     geometry : PairGeometry
     rule : SearchRule
+    work : (2, WORK) float64
+        Scratch.
 
     Returns
     -------
@@ -127,8 +169,8 @@ def search_line(grey, gradient_u, gradient_v, other, other_valid, u, v, low, hig
     # The epipolar line through the pixel in the keyframe, and how steep the image is along it.
     line_u = epipole[0] - epipole[2] * u
     line_v = epipole[1] - epipole[2] * v
-    length = np.hypot(line_u, line_v)
-    steepness = np.hypot(gradient_u[v, u], gradient_v[v, u])
+    length = math.sqrt(line_u * line_u + line_v * line_v)
+    steepness = math.sqrt(gradient_u[v, u] * gradient_u[v, u] + gradient_v[v, u] * gradient_v[v, u])
     if length < 1e-12 or steepness < 1e-6:
         return nothing
     line_u /= length
@@ -143,12 +185,12 @@ def search_line(grey, gradient_u, gradient_v, other, other_valid, u, v, low, hig
     if z0 <= 0 or z1 <= 0:
         return nothing
     x0, y0, x1, y1 = x0 / z0, y0 / z0, x1 / z1, y1 / z1
-    span = np.hypot(x1 - x0, y1 - y0)
+    span = _distance(x0, y0, x1, y1)
     wide0 = _transfer(infinite, baseline, u, v, bounds[0])
     wide1 = _transfer(infinite, baseline, u, v, bounds[1])
     if not 1e-9 < span <= _MAX_SPAN or wide0[2] <= 0 or wide1[2] <= 0:
         return nothing
-    whole = np.hypot(wide1[0] / wide1[2] - wide0[0] / wide0[2], wide1[1] / wide1[2] - wide0[1] / wide0[2])
+    whole = _distance(wide0[0] / wide0[2], wide0[1] / wide0[2], wide1[0] / wide1[2], wide1[1] / wide1[2])
     if whole < 1:
         return nothing
     step_u, step_v = (x1 - x0) / span, (y1 - y0) / span
@@ -171,37 +213,19 @@ def search_line(grey, gradient_u, gradient_v, other, other_valid, u, v, low, hig
     if u < reach + 1 or v < reach + 1 or u > width - 2 - reach or v > height - 2 - reach:
         return nothing
 
-    template = np.empty(2 * _REACH + 1)
-    for k in range(-_REACH, _REACH + 1):
-        template[k + _REACH] = _sample(grey, u + k * scale * line_u, v + k * scale * line_v)
-    template -= template.mean()
+    t0 = _sample(grey, u - 2 * scale * line_u, v - 2 * scale * line_v)
+    t1 = _sample(grey, u - scale * line_u, v - scale * line_v)
+    t2 = np.float64(grey[v, u])
+    t3 = _sample(grey, u + scale * line_u, v + scale * line_v)
+    t4 = _sample(grey, u + 2 * scale * line_u, v + 2 * scale * line_v)
+    mean = 0.2 * (t0 + t1 + t2 + t3 + t4)
+    template = (t0 - mean, t1 - mean, t2 - mean, t3 - mean, t4 - mean)
 
     # Samples run two steps past either end for the window and one more for the parabola.
-    count = places + 2 * (_REACH + 1)
-    samples = np.empty(count)
-    for k in range(count):
-        su = x0 + (k - _REACH - 1) * step_u
-        sv = y0 + (k - _REACH - 1) * step_v
-        samples[k] = np.nan
-        if _is_known(other_valid, su, sv):
-            samples[k] = _sample(other, su, sv)
-
-    differences = np.empty(places + 2)
-    best = -1
-    seen = 0
-    for place in range(places + 2):
-        mean = 0.0
-        for k in range(2 * _REACH + 1):
-            mean += samples[place + k]
-        mean /= 2 * _REACH + 1
-        difference = 0.0
-        for k in range(2 * _REACH + 1):
-            difference += (samples[place + k] - mean - template[k]) ** 2
-        differences[place] = difference if difference == difference else np.inf
-        if difference == difference:
-            seen += 1
-            if best < 0 or difference < differences[best]:
-                best = place
+    samples = work[0, : places + 2 * (_REACH + 1)]
+    _sample_line(other, x0 - (_REACH + 1) * step_u, y0 - (_REACH + 1) * step_v, step_u, step_v, samples)
+    differences = work[1, : places + 2]
+    seen, best = _compare(samples, template, differences)
     if seen < 3:
         return nothing
     missed = (NOT_FOUND, np.nan, np.nan)
@@ -257,6 +281,8 @@ def observe_neighbour(
         Mean and variance of inverse depth, agreeing and contradicting neighbours; changed in place.
     """
     height, width = grey.shape
+    known = np.where(other_valid, other, np.float32(np.nan))
+    work = np.empty((2, WORK))
     for v in range(height):
         for u in range(width):
             if not searched[v, u]:
@@ -265,7 +291,7 @@ def observe_neighbour(
             reach = 2 * np.sqrt(variance)
             low, high = max(mean - reach, bounds[0]), min(mean + reach, bounds[1])
             outcome, observed, uncertainty = search_line(
-                grey, gradient_u, gradient_v, other, other_valid, u, v, low, high, bounds, geometry, rule
+                grey, gradient_u, gradient_v, known, u, v, low, high, bounds, geometry, rule, work
             )
             if outcome == NOT_FOUND:
                 state[3, v, u] += 1

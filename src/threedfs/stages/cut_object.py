@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from threedfs.errors import UserError
-from threedfs.io.frames import read_frames
+from threedfs.io.crops import read_crops
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import write_mesh
 from threedfs.io.outlines import write_outlines
@@ -15,8 +15,9 @@ from threedfs.io.poses import read_poses
 from threedfs.io.segmentation import Segmentation, read_segmentation
 from threedfs.io.volumes import Volume, read_support, read_volume
 from threedfs.job import Job
+from threedfs.locate.height import height_above
 from threedfs.object.extract import extract_surface
-from threedfs.object.field import height_above, mask_field
+from threedfs.object.field import mask_field
 from threedfs.object.smooth import smooth_mesh
 from threedfs.params.cut_object import CutObjectParams
 from threedfs.segment.energy import OBJECT
@@ -32,7 +33,7 @@ def run(
     support: Path,
     keyframes: Path,
     poses: Path,
-    undistorted: Path,
+    crops: Path,
     mesh: Path,
     silhouettes: Path,
     masks: Path,
@@ -48,19 +49,21 @@ def run(
             f"{labels}: expected voxels of the object, found none; the method {method} has nothing to mesh."
         )
     views = {name: entry.view for name, entry in read_keyframes(keyframes).items()}
-    images = read_frames(undistorted)
+    images = read_crops(crops)
     if method != "gc_2d3d_voxel":  # the paper names no such step for volumetric_gc, whose table pieces would count
         voxels = largest_piece(voxels)
+    valid = {name: images.valid_of(name) for name in views}
     if field is None:
         surface = surround_voxels(voxels, cut.grid)
     else:
-        surface = _cut_field(
-            read_volume(field), cut, voxels, read_support(support).plane, views, images.valid, params, job
-        )
+        surface = _cut_field(read_volume(field), cut, voxels, read_support(support).plane, views, valid, params, job)
     write_mesh(mesh, surface)
     job.progress.note(f"{method}: {voxels.sum()} voxels, {len(surface.faces)} triangles")
-    distortion, source_shape = read_poses(poses).distortion, images.source_shape
-    write_outlines(silhouettes, masks, surface, list(views.values()), distortion, source_shape, job.header)
+    posed = read_poses(poses)
+    whole = {view.name: view for view in posed.views}
+    write_outlines(
+        silhouettes, masks, surface, list(views.values()), whole, posed.distortion, images.source_shape, job.header
+    )
 
 
 def _cut_field(
@@ -69,7 +72,7 @@ def _cut_field(
     voxels: np.ndarray,
     plane: Plane,
     views: dict[str, View],
-    valid: np.ndarray,
+    valid: dict[str, np.ndarray],
     params: CutObjectParams,
     job: Job,
 ):
@@ -93,5 +96,5 @@ def _cut_field(
         )
         owned |= filled
         job.progress.note(f"{filled.sum()} voxels filled for gaps in the masks, {(solid & (sdf > 0)).sum()} carved")
-    alone = mask_field(sdf, owned, height, grid.spacing)
+    alone = mask_field(sdf, owned, height, grid.spacing, params.median_size)
     return smooth_mesh(extract_surface(alone, grid), params.smoothing_steps, params.smoothing_contrast)

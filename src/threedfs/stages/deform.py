@@ -18,8 +18,9 @@ from threedfs.deform.evidence import (
 from threedfs.io.oriented_points import read_oriented_points
 from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.job import Job
-from threedfs.object.field import height_above, least_height
+from threedfs.locate.height import height_above, known_above, least_height
 from threedfs.params.deform import DeformParams
+from threedfs.params.rules import make_rule
 
 
 def run(
@@ -54,32 +55,23 @@ def run(
             full_sightings=params.full_sightings,
         )
         place = read_support(support)
-        check_samples(samples, (place.low + place.high) / 2, place.plane)
+        check_samples(samples, place.box.centre, place.plane)
         if params.cell > 0:
             scatter = measure_scatter(samples, fused.sdf, fused.grid)
             belief = believe_scattered(scatter, params.scatter)
             job.progress.note(f"points scatter by {scatter:.2f} voxels and count {belief:.2f} times")
-            samples = average_in_cells(samples, params.cell * fused.grid.spacing, belief)
+            samples = average_in_cells(samples, fused.grid, params.cell, belief)
         sdf = correct_zero_crossing(
             fused.sdf,
             fused.seen,
             fused.grid,
             samples,
-            CorrectionRule(
-                rbf_width=params.rbf_width,
-                controls=params.controls,
-                control_level=params.control_level,
-                surface_points=params.surface_points,
-                anchors=params.anchors,
-                ridge=params.ridge,
-                reweightings=params.reweightings,
-                residual_scale=params.residual_scale,
-            ),
+            make_rule(CorrectionRule, params),
             np.random.default_rng(job.seed),
             job.progress.note,
         )
         if params.keep_apart:
             least = least_height(clearance, noise_clearance, fused.grid.spacing, place.figures["plane_noise"])
-            above = (fused.seen > 0) & (height_above(place.plane, fused.grid) > least)
+            above = known_above(fused.seen, height_above(place.plane, fused.grid), least)
             sdf = keep_apart(fused.sdf, sdf, above)
     write_volume(volume, Volume(fused.grid, sdf, fused.seen), job.header)

@@ -11,8 +11,8 @@ from threedfs.colmap.workspace import FusionRule, fuse_workspace, match_on_gpu, 
 from threedfs.densify.engine import choose_engine
 from threedfs.densify.normals import patch_normals
 from threedfs.densify.tracks import list_tracks
+from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_stereo
-from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.oriented_points import write_oriented_points
 from threedfs.io.points import read_points
@@ -20,12 +20,13 @@ from threedfs.io.poses import read_poses
 from threedfs.io.volumes import read_support
 from threedfs.job import Job
 from threedfs.params.densify import DensifyParams
+from threedfs.params.rules import make_rule
 from threedfs.types import OrientedPoints
 
 
 def run(
     *,
-    undistorted: Path,
+    crops: Path,
     keyframes: Path,
     poses: Path,
     points: Path,
@@ -45,7 +46,7 @@ def run(
     if engine == "off":
         found = _nothing()
     else:
-        frames = read_frames(undistorted)
+        frames = read_crops(crops)
         numbers = {view.name: number for number, view in enumerate(read_poses(poses).views)}
         tracks = list_tracks(read_points(points), [numbers[view.name] for view in views])
         with TemporaryDirectory(prefix="threedfs-") as folder:
@@ -60,11 +61,8 @@ def run(
                     kept = np.where(patches.cost <= params.max_cost, patches.inverse_depth, np.nan)
                     normal = patch_normals(view.camera, kept, patches.slope)
                     write_patch_map(workspace, view, 1 / kept, normal)
-            rule = FusionRule(
-                params.min_pixels, params.max_depth_error, params.max_reprojection_error, params.max_normal_error
-            )
-            place = read_support(support)
-            found = fuse_workspace(workspace, rule, place.low, place.high)
+            rule = make_rule(FusionRule, params)
+            found = fuse_workspace(workspace, rule, read_support(support).box)
     job.progress.note(f"{len(found.xyz)} surface points ({engine})")
     write_oriented_points(cloud, found, [view.name for view in views], engine, job.header)
 

@@ -11,8 +11,8 @@ from threedfs.depth.evidence import gather_evidence
 from threedfs.depth.measurements import distrust_unmatched, merge_measurements
 from threedfs.depth.solver import optimise_depth
 from threedfs.depth.weights import edge_weight, measurement_weight
+from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import DepthMap, read_edges, read_semidense, read_stereo, write_depth_map
-from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import read_keyframe
 from threedfs.job import Job
 from threedfs.params.depth import DepthParams, matching_settings, solver_settings
@@ -20,7 +20,7 @@ from threedfs.params.depth import DepthParams, matching_settings, solver_setting
 
 def run(
     *,
-    undistorted: Path,
+    crops: Path,
     keyframes: Path,
     semidense: Path,
     edges: Path,
@@ -36,13 +36,13 @@ def run(
     and depth in front of the keyframe's range is left out.
     """
     cv2.setNumThreads(1)  # a keyframe is one job of one core
-    frames = read_frames(undistorted)
+    frames = read_crops(crops)
     entry = read_keyframe(keyframes, keyframe)
     measured = read_semidense(semidense)
     evidence = gather_evidence(
         entry,
         frames.image,
-        frames.valid,
+        frames.valid_of,
         **matching_settings(params),
         track=lambda views: job.progress.track(views, "neighbour"),
         note=job.progress.note,
@@ -64,7 +64,9 @@ def run(
         note=job.progress.note,
     )
     # Where nothing holds it, the smooth surface may swing far out; in front of the scene it would hide all else.
-    result = np.where(frames.valid & (solution.depth >= entry.near), solution.depth, np.nan).astype(np.float32)
+    result = np.where(frames.valid_of(keyframe) & (solution.depth >= entry.near), solution.depth, np.nan).astype(
+        np.float32
+    )
     write_depth_map(
         depth,
         DepthMap(result, evidence.min_cost, confidence.astype(np.float32)),

@@ -10,8 +10,9 @@ from threedfs.errors import UserError
 from threedfs.evaluate.depth_error import DepthPairs, pair_depths, pool_pairs
 from threedfs.evaluate.depth_experiment import experiment_figures, find_object_depths
 from threedfs.evaluate.figures import Figure
+from threedfs.evaluate.scores import Metric
 from threedfs.io.depth_trials import DepthTrial, read_depth_trial
-from threedfs.io.metrics import DEPTH_METHODS, Metric, write_metrics
+from threedfs.io.metrics import DEPTH_METHODS, write_metrics
 from threedfs.job import Job
 from threedfs.params.depth_experiment import DepthExperimentParams
 

@@ -21,6 +21,7 @@ from threedfs.evaluate.masks import check_mask_size
 from threedfs.evaluate.rendering import MeshRenderer, filmed_pixels, image_points, sample_nearest
 from threedfs.evaluate.true_cameras import Filmed, relate_cameras
 from threedfs.frames.masks import match_masks
+from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_edges
 from threedfs.io.depth_trials import DepthTrial, write_depth_trial
 from threedfs.io.frames import FrameStore, read_frames
@@ -39,7 +40,8 @@ from threedfs.params.schema import make_params
 
 def run(
     *,
-    undistorted: Path,
+    frames: Path,
+    crops: Path,
     keyframes: Path,
     edges: Path,
     poses: Path,
@@ -64,24 +66,25 @@ def run(
         If a truth cannot be read, does not belong to the keyframe, or has too few depths.
     """
     cv2.setNumThreads(1)  # a keyframe is one job of one core
-    frames, solved = read_frames(undistorted), read_poses(poses)
+    store, images, solved = read_frames(frames), read_crops(crops), read_poses(poses)
     entry = read_keyframe(keyframes, keyframe)
     dense = make_params(DepthParams, depth_settings)
-    true_cameras = relate_cameras(read_given_cameras(cameras_truth, intrinsics), solved.views, frames)
+    true_cameras = relate_cameras(read_given_cameras(cameras_truth, intrinsics), solved.views, store)
+    whole = next(view.camera for view in solved.views if view.name == keyframe)
     scale = true_cameras.from_scene.scale
-    pixels = filmed_pixels(entry.view.camera, solved.distortion, frames.source_shape)
+    pixels = filmed_pixels(entry.view.camera, whole, solved.distortion, store.source_shape)
     filmed = true_cameras.seen.get(keyframe)
     colour = None if filmed is None else filmed[0].camera
     file = find_depth_images(depth_truth, [keyframe])[keyframe]
-    image = read_true_depth(file, depth_scale, frames.source_shape, depth_camera, colour)
-    truth = np.where(frames.valid, sample_nearest(image, pixels, np.nan), np.nan)
+    image = read_true_depth(file, depth_scale, store.source_shape, depth_camera, colour)
+    truth = np.where(images.valid_of(keyframe), sample_nearest(image, pixels, np.nan), np.nan)
     drawn = draw_measurements(
         truth, max(params.measurements), np.random.default_rng([job.seed, zlib.crc32(keyframe.encode())])
     )
     evidence = gather_evidence(
         entry,
-        frames.image,
-        frames.valid,
+        images.image,
+        images.valid_of,
         **matching_settings(dense),
         track=lambda views: job.progress.track(views, "neighbour"),
         note=job.progress.note,
@@ -105,7 +108,7 @@ def run(
             )
             maps[f"{prior}/{count}"] = scale * solution.depth
             job.progress.note(f"{prior} from {count} measurements: {sum(solution.steps)} steps")
-    on_object = _find_object(masks_truth, mesh_truth, keyframe, filmed, pixels, frames)
+    on_object = _find_object(masks_truth, mesh_truth, keyframe, filmed, pixels, store)
     depth = np.stack(list(maps.values())).astype(np.float32)
     write_depth_trial(trial, DepthTrial(tuple(maps), depth, truth.astype(np.float32), on_object, drawn), job.header)
 
@@ -129,4 +132,4 @@ def _find_object(
         view, distortion = filmed
         points = image_points(view.camera, distortion, pixels)
         return np.isfinite(MeshRenderer(read_mesh(mesh)).depth(view.cam_from_world, points))
-    return np.zeros(frames.shape, bool)
+    return np.zeros(pixels.shape[:2], bool)

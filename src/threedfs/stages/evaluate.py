@@ -11,6 +11,7 @@ from threedfs.evaluate.cylinder import measure_cylinder
 from threedfs.evaluate.figures import Figure, cylinder_figures, mask_figures, mesh_figures, soundness_figures
 from threedfs.evaluate.masks import check_mask_size, intersection_over_union
 from threedfs.evaluate.mesh_error import measure_mesh
+from threedfs.evaluate.scores import Metric
 from threedfs.evaluate.true_cameras import TrueCameras, relate_cameras
 from threedfs.frames.masks import find_masks
 from threedfs.io.frames import FrameStore, read_frames
@@ -18,7 +19,7 @@ from threedfs.io.given_cameras import read_given_cameras
 from threedfs.io.images import read_mask
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
-from threedfs.io.metrics import Metric, write_metrics
+from threedfs.io.metrics import write_metrics
 from threedfs.io.poses import read_poses
 from threedfs.job import Job
 from threedfs.object.silhouettes import draw_source_silhouette

@@ -11,13 +11,14 @@ from threedfs.evaluate.depth_error import DepthPairs, pair_depths
 from threedfs.evaluate.figures import Figure, depth_figures, pose_figures, reconstruction_figures
 from threedfs.evaluate.pose_error import measure_poses
 from threedfs.evaluate.rendering import MeshRenderer, filmed_pixels, image_points, sample_nearest
+from threedfs.evaluate.scores import Metric
 from threedfs.evaluate.true_cameras import TrueCameras, relate_cameras
 from threedfs.io.depth_maps import read_depth_map
 from threedfs.io.frames import FrameStore, read_frames
 from threedfs.io.given_cameras import read_given_cameras
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
-from threedfs.io.metrics import Metric, write_metrics
+from threedfs.io.metrics import write_metrics
 from threedfs.io.poses import Poses, read_poses
 from threedfs.io.truth import read_true_depth
 from threedfs.io.truth_files import find_depth_images
@@ -84,11 +85,11 @@ def _score_depth_by_mesh(
     solved: Poses,
     params: EvaluateReconstructionParams,
 ) -> list[Figure]:
-    renderer = MeshRenderer(exact)
+    renderer, whole = MeshRenderer(exact), {view.name: view.camera for view in solved.views}
     pairs = {}
     for name in (name for name in selected if name in truth.seen):
         filmed, distortion = truth.seen[name]
-        pixels = filmed_pixels(selected[name].view.camera, solved.distortion, filmed.camera.shape)
+        pixels = filmed_pixels(selected[name].view.camera, whole[name], solved.distortion, filmed.camera.shape)
         expected = renderer.depth(filmed.cam_from_world, image_points(filmed.camera, distortion, pixels))
         estimated = truth.from_scene.scale * read_depth_map(maps[name]).depth
         pairs[name] = pair_depths(estimated, expected, erosion=params.silhouette_erosion)
@@ -106,10 +107,11 @@ def _score_depth_by_images(
     store: FrameStore,
 ) -> list[Figure]:
     pairs: dict[str, DepthPairs] = {}
+    whole = {view.name: view.camera for view in solved.views}
     for name, file in images.items():
         colour = truth.seen[name][0].camera if name in truth.seen else None
         image = read_true_depth(file, scale, store.source_shape, depth_camera, colour)
-        pixels = filmed_pixels(selected[name].view.camera, solved.distortion, store.source_shape)
+        pixels = filmed_pixels(selected[name].view.camera, whole[name], solved.distortion, store.source_shape)
         estimated = truth.from_scene.scale * read_depth_map(maps[name]).depth
         pairs[name] = pair_depths(estimated, sample_nearest(image, pixels, np.nan))
     return depth_figures(pairs, "truth unit", "scene_depth")

@@ -38,7 +38,7 @@ def run(
 ) -> None:
     """Lay the grid over the object's box, fuse, and write the volume; whether views agree does not matter."""
     place = read_support(support)
-    grid = cover_box(place.low, place.high, params.longest_side)
+    grid = cover_box(place.box, params.longest_side)
     clip_distance = limit_clip_distance(
         params.clip_distance, place.figures["thickness"], params.thickness_share, grid.spacing
     )

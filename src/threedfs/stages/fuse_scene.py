@@ -6,9 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from threedfs.fusion.fixation import find_fixation, viewing_distance
 from threedfs.fusion.fuse import fuse_views
-from threedfs.fusion.region import scene_region
 from threedfs.fusion.softmax import SoftMaximum
 from threedfs.geometry.grid import cover_box
 from threedfs.io.consistency import read_consistency
@@ -17,6 +15,8 @@ from threedfs.io.points import read_points
 from threedfs.io.volumes import Volume, write_volume
 from threedfs.io.votes import read_votes
 from threedfs.job import Job
+from threedfs.locate.fixation import find_fixation, viewing_distance
+from threedfs.locate.region import scene_region
 from threedfs.params.fuse_scene import FuseSceneParams
 
 
@@ -43,7 +43,7 @@ def run(
         params.region_least_reach * distance,
         params.region_reach * distance,
     )
-    grid = cover_box(*region, params.longest_side)
+    grid = cover_box(region, params.longest_side)
     fused = SoftMaximum(
         grid,
         params.clip_distance * grid.spacing,

@@ -6,8 +6,10 @@ from pathlib import Path
 
 import numpy as np
 
+from threedfs.crops.resample import find_valid
 from threedfs.errors import UserError
 from threedfs.frames.masks import find_masks
+from threedfs.geometry.lens import Lens
 from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import write_keyframes
 from threedfs.io.points import read_points
@@ -19,12 +21,13 @@ from threedfs.keyframes.sectors import cluster_photos, score_frames, split_seque
 from threedfs.keyframes.selection import choose_keyframes, viewing_directions
 from threedfs.keyframes.visibility import find_visibility
 from threedfs.params.keyframes import KeyframesParams
+from threedfs.params.rules import make_rule
 from threedfs.types import Keyframe
 
 
 def run(
     *,
-    undistorted: Path,
+    frames: Path,
     poses: Path,
     points: Path,
     masks: Path | None,
@@ -43,9 +46,11 @@ def run(
         If no frame can be a keyframe, or one with a mask cannot, for want of points in view or of neighbours; or if
         no mask belongs to a posed frame.
     """
-    store = read_frames(undistorted)
-    views = read_poses(poses).views
-    visibility = find_visibility(views, read_points(points), store.valid)
+    store, posed = read_frames(frames), read_poses(poses)
+    views = posed.views
+    lenses = dict.fromkeys(Lens(view.camera, *posed.distortion) for view in views)
+    valid = np.logical_and.reduce([find_valid(lens, lens.camera) for lens in lenses])
+    visibility = find_visibility(views, read_points(points), valid)
     names = [view.name for view in views]
     masked = {} if masks is None else find_masks(masks, names, numbered=store.ordered)
     annotated = np.array([name in masked for name in names])
@@ -69,15 +74,7 @@ def run(
         count=params.max_keyframes,
         max_gap=params.max_gap,
     )
-    rule = NeighbourRule(
-        count=params.neighbours,
-        min_count=params.min_neighbours,
-        min_angle=params.min_angle,
-        max_angle=params.max_angle,
-        widest_angle=params.widest_angle,
-        min_overlap=params.min_overlap,
-        min_shared=params.min_shared,
-    )
+    rule = make_rule(NeighbourRule, params, count=params.neighbours, min_count=params.min_neighbours)
     entries, alone = [], []
     for frame in job.progress.track(usable[chosen], "keyframes"):
         near, far = expect_depth_range(visibility.depth[frame], params.near_factor, params.far_factor, names[frame])

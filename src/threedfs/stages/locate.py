@@ -2,25 +2,38 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from threedfs.errors import UserError
-from threedfs.fusion.fixation import find_fixation, find_up, viewing_distance
-from threedfs.fusion.support import SupportRule, find_support
-from threedfs.fusion.surface import zero_crossings
+from threedfs.geometry.grid import cut_grid
+from threedfs.io.consistency import ConsistencyStore, read_consistency
+from threedfs.io.crops import CropStore, read_crops
+from threedfs.io.depth_maps import read_depth_map, read_edges
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.point_clouds import read_semidense_points
 from threedfs.io.points import read_points
-from threedfs.io.volumes import Support, read_volume, write_support
+from threedfs.io.volumes import read_volume, write_support
 from threedfs.job import Job
-from threedfs.object.box import enclose_object, measure_thickness
-from threedfs.object.component import choose_standing_component, mark_points
-from threedfs.object.field import height_above
+from threedfs.locate.box import widen_support
+from threedfs.locate.find import stand_on
+from threedfs.locate.scene import SceneRule, find_in_scene
 from threedfs.params.locate import LocateParams
+from threedfs.params.rules import make_rule
+from threedfs.params.schema import make_params
+from threedfs.params.segment import SegmentParams
+from threedfs.segment.extent import find_extent
+from threedfs.segment.gather import GatherRule, Scene
+from threedfs.segment.joint import CutRule
+from threedfs.segment.superpixels import split_image
+from threedfs.types import Keyframe
 
-_SAMPLE = 4000  # semi-dense points of a keyframe that take part in the search for the plane
+_SUPERPIXEL, _COMPACTNESS = 16.0, 10.0
+"""Area in pixels and compactness of superpixels in small images."""
+_ROUNDS, _COLORS = 3, 20_000
+"""Rounds of the coarse segmentation, and pixels drawn to learn colours from."""
 
 
 def run(
@@ -28,71 +41,82 @@ def run(
     scene: Path,
     keyframes: Path,
     points: Path,
+    crops: Path,
     semidense: list[Path],
+    edges: list[Path],
+    depth: list[Path],
+    consistency: Path,
     support: Path,
+    clearance: float,
+    segmentation: Mapping[str, Any],
     params: LocateParams,
     job: Job,
 ) -> None:
-    """Read the scene's volume and the points; write the plane and the object's box."""
-    volume = read_volume(scene)
-    grid = volume.grid
-    entries = read_keyframes(keyframes)
-    views = [entry.view for entry in entries.values()]
-    fixation = find_fixation(views, np.median(read_points(points).xyz, axis=0))
-    distance = viewing_distance(views, fixation)
-    rule = SupportRule(
-        tolerance=params.plane_tolerance * grid.spacing,
-        doublings=params.plane_doublings,
-        reach=params.plane_reach * distance,
-        max_tilt=params.plane_max_tilt,
-        min_share=params.plane_min_share,
-        candidates=params.plane_candidates,
-    )
+    """Read the scene's volume, points and what its images show; write the plane and the object's box.
+
+    `clearance` is the least height above the plane from which voxels may belong to the object, voxels; `segmentation`
+    are the settings of the segment stage, by which images are asked for more of the object.
+    """
+    volume, entries = read_volume(scene), read_keyframes(keyframes)
     generator = np.random.default_rng(job.seed)
-    sample, holds = [], np.zeros(grid.shape, bool)
-    for cloud in read_semidense_points(entries, semidense, params.point_deviation):
-        mark_points(grid, cloud, holds)
-        sample.append(generator.choice(cloud, min(len(cloud), _SAMPLE), replace=False))
-    found = find_support(
-        *zero_crossings(grid, volume.sdf, volume.seen),
-        np.concatenate(sample),
-        centres=np.stack([view.centre for view in views]),
-        fixation=fixation,
-        up=find_up(views, fixation),
-        rule=rule,
-        generator=generator,
+    found, known = find_in_scene(
+        volume.grid,
+        volume.sdf,
+        volume.seen,
+        [entry.view for entry in entries.values()],
+        read_points(points).xyz,
+        read_semidense_points(entries, semidense, params.point_deviation),
+        make_rule(SceneRule, params, clearance=clearance),
+        generator,
     )
-    height = height_above(found.plane, grid)
-    chosen = choose_standing_component(
-        (volume.sdf < 0) & (volume.seen > 0),
-        height,
-        grid,
-        holds,
-        fixation,
-        clearance=params.clearance * grid.spacing,
-        doublings=params.clearance_doublings,
-        reach=params.object_reach * distance,
-        bridge=params.bridge,
-    )
-    if chosen is None:
-        raise UserError(
-            "No object was found above the support plane: expected a solid with semi-dense points on it, got none; "
-            "an object lower than locate.clearance or without any texture is missed: lower locate.clearance, or film "
-            "from nearer."
-        )
-    low, high_corner = enclose_object(chosen.voxels, grid, found.plane, params.box_margin)
-    figures = {
-        "plane_share": found.share,
-        "plane_noise": found.noise,
-        "plane_extent": found.extent,
-        "thickness": measure_thickness(chosen.voxels, grid.spacing),
-        "viewing_distance": distance,
-        "object_voxels": float(chosen.voxels.sum()),
-        "supported_voxels": float(chosen.support),
-        "rival_components": float(chosen.rivals),
-    }
+    figures = found.figures
     job.progress.note(
-        f"support plane with {found.share:.0%} of the nearby upward-facing surface; object of {chosen.voxels.sum()} "
-        f"voxels, {chosen.support} of them with semi-dense points, before {chosen.rivals} other components"
+        f"support plane with {figures['plane_share']:.0%} of the nearby upward-facing surface; object of "
+        f"{figures['object_voxels']:.0f} voxels, {figures['supported_voxels']:.0f} of them with semi-dense points, "
+        f"before {figures['rival_components']:.0f} other components"
     )
-    write_support(support, Support(found.plane, low, high_corner, figures), job.header)
+    if params.box_reach > 0:
+        rule = make_params(SegmentParams, segmentation)
+        images = _gather_images(entries, read_crops(crops), read_consistency(consistency), edges, depth)
+        around = found.box.grow(params.box_reach * found.box.longest)
+        grid, part = cut_grid(volume.grid, around)
+        located = stand_on(grid, found.plane, known[part], clearance * grid.spacing)
+        shown = np.zeros_like(known)
+        shown[part] = find_extent(
+            Scene(located, volume.sdf[part], around, **images, semidense={}),
+            make_rule(GatherRule, rule, random_first=False, by_mean=rule.pair_edge == "mean", surface_links=True),
+            make_rule(CutRule, rule, components=rule.color_components, iterations=_ROUNDS, color_pixels=_COLORS),
+            generator,
+            job.progress.note,
+        )
+        found = widen_support(found, known, shown, volume.grid, params.box_margin)
+        used, enlarged = found.figures["margin_used"], found.figures["box_enlarged"]
+        job.progress.note(
+            f"what images show of the object takes up {used:.0%} of the box's margin"
+            + (f"; the box is enlarged to {enlarged:.2f} times its volume" if enlarged != 1 else "")
+        )
+    write_support(support, found, job.header)
+
+
+def _gather_images(
+    entries: Mapping[str, Keyframe],
+    store: CropStore,
+    trust: ConsistencyStore,
+    edges: Sequence[Path],
+    depth: Sequence[Path],
+) -> dict[str, dict[str, Any]]:
+    """Return what the images show, by keyframe, as `Scene` takes it."""
+    images = {name: store.image(name) for name in entries}
+    valid = {name: store.valid_of(name) for name in entries}
+    strength = {path.name.removesuffix(".zarr.zip"): read_edges(path) for path in edges}
+    return {
+        "views": {name: entry.view for name, entry in entries.items()},
+        "images": images,
+        "valid": valid,
+        "superpixels": {
+            name: split_image(images[name], valid[name], strength[name], area=_SUPERPIXEL, compactness=_COMPACTNESS)
+            for name in entries
+        },
+        "depth": {path.name.removesuffix(".zarr.zip"): read_depth_map(path).depth for path in depth},
+        "confidence": {name: trust.read(name).confidence for name in entries},
+    }

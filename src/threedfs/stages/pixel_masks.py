@@ -20,8 +20,10 @@ def run(
     """Read a segmentation; write its masks in working and in source frames."""
     drawn = read_segmentation(labels).masks
     write_silhouettes(silhouettes, drawn, job.header)
-    distortion, source_shape = read_poses(poses).distortion, read_frames(frames).source_shape
+    posed, source_shape = read_poses(poses), read_frames(frames).source_shape
+    whole = {view.name: view.camera for view in posed.views}
     masks.mkdir(parents=True, exist_ok=True)
     for name, entry in read_keyframes(keyframes).items():
-        write_mask(masks / f"{name}.png", distort_mask(drawn[name], entry.view.camera, distortion, source_shape))
+        mask = distort_mask(drawn[name], entry.view.camera, whole[name], posed.distortion, source_shape)
+        write_mask(masks / f"{name}.png", mask)
     job.progress.note(f"{method}: {len(drawn)} masks")

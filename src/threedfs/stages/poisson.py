@@ -33,12 +33,13 @@ def run(
 ) -> None:
     """Read the points; write the mesh of those on the object, and its masks."""
     place = read_support(support)
-    clearance = params.clearance * (place.high - place.low).max()
+    clearance = params.clearance * place.box.longest
     found, _ = read_oriented_points(cloud)
-    points = crop_points(found, place.low, place.high, place.plane, clearance, params.min_sightings)
+    points = crop_points(found, place.box, place.plane, clearance, params.min_sightings)
     surface = keep_largest_shell(mesh_points(points, params.octree_depth))
     job.progress.note(f"{len(points.xyz)} points, {len(surface.faces)} triangles")
     write_mesh(mesh, surface)
     views = [entry.view for entry in read_keyframes(keyframes).values()]
-    distortion, source_shape = read_poses(poses).distortion, read_frames(frames).source_shape
-    write_outlines(silhouettes, masks, surface, views, distortion, source_shape, job.header)
+    posed, source_shape = read_poses(poses), read_frames(frames).source_shape
+    whole = {view.name: view for view in posed.views}
+    write_outlines(silhouettes, masks, surface, views, whole, posed.distortion, source_shape, job.header)

@@ -14,7 +14,7 @@ from threedfs.geometry.lens import Lens
 from threedfs.io.calibration import read_calibration
 from threedfs.io.features import read_features
 from threedfs.io.frames import FrameStore, read_frames
-from threedfs.io.given_cameras import GivenCamera, read_given_cameras
+from threedfs.io.given_cameras import read_given_cameras
 from threedfs.io.points import write_points
 from threedfs.io.poses import Poses, write_poses
 from threedfs.job import Job
@@ -28,7 +28,7 @@ from threedfs.poses.gates import (
     check_quality,
     check_registered,
 )
-from threedfs.poses.given import find_cameras, fit_lens, shared_distortion
+from threedfs.poses.given import GivenCamera, find_cameras, fit_lens, shared_distortion
 from threedfs.poses.matcher import FrameFeatures, MatchRule, PairMatcher
 from threedfs.poses.normalise import find_scale, rescale_points
 from threedfs.poses.pairs import overlapping_pairs

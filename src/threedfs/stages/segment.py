@@ -7,15 +7,16 @@ from pathlib import Path
 import numpy as np
 
 from threedfs.io.consistency import read_consistency
+from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_depth_map
-from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import read_keyframes
+from threedfs.io.located import read_located
 from threedfs.io.point_clouds import read_semidense_maps
 from threedfs.io.segmentation import Segmentation, write_segmentation
 from threedfs.io.superpixels import read_superpixels
 from threedfs.io.volumes import read_support, read_volume
 from threedfs.job import Job
-from threedfs.object.field import least_height
+from threedfs.params.rules import make_rule
 from threedfs.params.segment import SegmentParams
 from threedfs.segment.energy import OBJECT
 from threedfs.segment.gather import GatherRule, Scene, gather_images, gather_voxels
@@ -27,9 +28,10 @@ from threedfs.segment.refine import RefineRule, refine_mask
 def run(
     *,
     field: Path,
+    located: Path,
     support: Path,
     keyframes: Path,
-    undistorted: Path,
+    crops: Path,
     superpixels: list[Path],
     semidense: list[Path],
     depth: list[Path],
@@ -39,84 +41,42 @@ def run(
     params: SegmentParams,
     job: Job,
 ) -> None:
-    """Read the fused field and what the keyframes show; write labels, `joint` or of the `images` alone."""
-    fused, place, entries, store = (
-        read_volume(field),
-        read_support(support),
-        read_keyframes(keyframes),
-        read_frames(undistorted),
-    )
+    """Read a field, the object in it and what the keyframes show; write labels, `joint` or of the `images` alone."""
+    place, entries, store = read_located(located), read_keyframes(keyframes), read_crops(crops)
     views = {name: entry.view for name, entry in entries.items()}
     trust = read_consistency(consistency)
     scene = Scene(
-        fused.grid,
-        fused.sdf,
-        fused.seen,
-        place.plane,
-        place.low,
-        place.high,
-        clearance=least_height(
-            params.clearance, params.noise_clearance, fused.grid.spacing, place.figures["plane_noise"]
-        ),
+        place,
+        read_volume(field).sdf,
+        read_support(support).box,
         views=views,
         images={name: store.image(name) for name in views},
-        valid=store.valid,
+        valid={name: store.valid_of(name) for name in views},
         superpixels={path.name.removesuffix(".zarr.zip"): read_superpixels(path) for path in superpixels},
         depth={path.name.removesuffix(".zarr.zip"): read_depth_map(path).depth for path in depth},
         confidence={name: trust.read(name).confidence for name in views},
-        semidense=read_semidense_maps(semidense, params.point_deviation),
+        semidense=read_semidense_maps(semidense, params.point_deviation) if params.links == "semidense" else {},
     )
-    gather = GatherRule(
-        object_reach=params.object_reach,
-        outer_level=params.outer_level,
-        outer_height=params.outer_height,
-        outer_margin=params.outer_margin,
-        fill_outer=params.fill_outer,
-        inner_level=params.inner_level,
-        decided_share=params.decided_share,
+    gather = make_rule(
+        GatherRule,
+        params,
         random_first=params.first_labels == "random",
-        empty_level=params.empty_level,
-        deepest=params.deepest,
-        silhouette_ramp=params.silhouette_ramp,
-        table=params.table,
-        table_reach=params.table_reach,
-        pair_weight=params.pair_weight,
         by_mean=params.pair_edge == "mean",
-        pair_falloff=params.pair_falloff,
         surface_links=params.links == "surface",
-        link_weight=params.link_weight,
-        link_by_share=params.link_by_share,
     )
     job.progress.note(f"{cut}: the {params.field} field, {len(views)} keyframes")
     generator = np.random.default_rng(job.seed)
     volume, bounds = gather_voxels(scene, gather)
     images = gather_images(scene, volume, bounds, gather, generator)
-    rule = CutRule(
-        components=params.color_components,
-        color_superpixels=params.color_superpixels,
-        color_pixels=params.color_pixels,
-        color_cap=params.color_cap,
-        color_weight=params.color_weight,
-        roi_weight=params.roi_weight,
-        silhouette_weight=params.silhouette_weight,
-        sdf_weight=params.sdf_weight,
-        scene_weight=params.scene_weight,
-        carve_weight=params.carve_weight,
-        carve_tolerance=params.carve_tolerance,
-        voxel_pair_weight=params.voxel_pair_weight,
-        iterations=params.iterations,
-        stop_swaps=params.stop_swaps,
-        stop_share=params.stop_share,
-    )
+    rule = make_rule(CutRule, params, components=params.color_components)
     found = segment_jointly(images, volume if cut == "joint" else None, rule, generator, job.progress.note)
     masks = {name: images[name].superpixels.paint(own == OBJECT) for name, own in found.superpixels.items()}
     if params.refine:
-        drawn = {} if found.voxels is None else draw_voxels(found.voxels == OBJECT, fused.grid, views)
-        finer = RefineRule(
-            color_cap=params.color_cap,
-            color_weight=params.color_weight,
+        drawn = {} if found.voxels is None else draw_voxels(found.voxels == OBJECT, place.grid, views)
+        finer = make_rule(
+            RefineRule,
+            params,
             label_weight=params.refine_label_weight,
-            silhouette_weight=params.silhouette_weight,
             pair_weight=params.refine_pair_weight,
             contrast=params.refine_contrast,
         )
@@ -125,4 +85,4 @@ def run(
             for name, own in job.progress.track(found.superpixels.items(), "mask", len(views))
         }
     voxels = np.zeros((0, 0, 0), np.uint8) if found.voxels is None else found.voxels
-    write_segmentation(labels, Segmentation(masks, fused.grid, voxels, found.energies, found.swaps), job.header)
+    write_segmentation(labels, Segmentation(masks, place.grid, voxels, found.energies, found.swaps), job.header)

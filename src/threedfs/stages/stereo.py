@@ -7,11 +7,12 @@ from pathlib import Path
 import numpy as np
 
 from threedfs.depth.zncc import prepare_grey
+from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import StereoMap, read_semidense, write_stereo
-from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import read_keyframe
 from threedfs.io.volumes import read_support
 from threedfs.job import Job
+from threedfs.params.rules import make_rule
 from threedfs.params.stereo import StereoParams
 from threedfs.stereo.patch_match import PatchRule, match_patches
 from threedfs.stereo.region import mask_box
@@ -19,7 +20,7 @@ from threedfs.stereo.region import mask_box
 
 def run(
     *,
-    undistorted: Path,
+    crops: Path,
     keyframes: Path,
     semidense: Path,
     support: Path | None,
@@ -33,30 +34,22 @@ def run(
     If the place of the object is given, patches are sought at the pixels that see its box, at any depth: in front of it
     and behind it too.
     """
-    frames = read_frames(undistorted)
+    frames = read_crops(crops)
     entry = read_keyframe(keyframes, keyframe)
     neighbours = entry.neighbours[: params.views]
     wanted = np.ones(entry.view.camera.shape, bool)
     if support:
-        place = read_support(support)
-        wanted = mask_box(entry.view, place.low, place.high)
+        wanted = mask_box(entry.view, read_support(support).box)
     found = match_patches(
         entry.view,
-        prepare_grey(frames.image(keyframe), frames.valid),
+        prepare_grey(frames.image(keyframe), frames.valid_of(keyframe)),
         neighbours,
-        [prepare_grey(frames.image(view.name), frames.valid) for view in neighbours],
+        [prepare_grey(frames.image(view.name), frames.valid_of(view.name)) for view in neighbours],
         read_semidense(semidense).inverse_depth.astype(np.float64),
         wanted,
         near=entry.near,
         far=entry.far,
-        rule=PatchRule(
-            radius=params.radius,
-            stride=params.stride,
-            likeness=params.likeness,
-            variance_floor=params.variance_floor,
-            least_variance=params.least_variance,
-            best_views=params.best_views,
-        ),
+        rule=make_rule(PatchRule, params),
         levels=params.levels,
         rounds=params.rounds,
         seed=job.seed,

@@ -6,15 +6,16 @@ from pathlib import Path
 
 import numpy as np
 
-from threedfs.fusion.fixation import find_fixation
 from threedfs.geometry.grid import cover_box, voxel_index
-from threedfs.io.frames import read_frames
+from threedfs.io.crops import read_crops
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.point_clouds import read_semidense_points
 from threedfs.io.segmentation import Segmentation, write_segmentation
 from threedfs.io.volumes import read_support
 from threedfs.job import Job
-from threedfs.object.field import height_above
+from threedfs.locate.fixation import find_fixation
+from threedfs.locate.height import height_above
+from threedfs.params.rules import make_rule
 from threedfs.params.volumetric_cut import VolumetricCutParams
 from threedfs.segment.volumetric import VolumetricRule, cut_volume
 
@@ -23,16 +24,16 @@ def run(
     *,
     support: Path,
     keyframes: Path,
-    undistorted: Path,
+    crops: Path,
     semidense: list[Path],
     labels: Path,
     params: VolumetricCutParams,
     job: Job,
 ) -> None:
     """Read images, the object's box and semi-dense points; write voxel labels."""
-    place, entries, store = read_support(support), read_keyframes(keyframes), read_frames(undistorted)
+    place, entries, store = read_support(support), read_keyframes(keyframes), read_crops(crops)
     views = {name: entry.view for name, entry in entries.items()}
-    grid = cover_box(place.low, place.high, params.longest_side)
+    grid = cover_box(place.box, params.longest_side)
     votes = np.zeros(grid.shape, np.float32)
     for cloud in read_semidense_points(entries, semidense, params.point_deviation):
         index, _ = voxel_index(grid, cloud)
@@ -43,17 +44,8 @@ def run(
         grid,
         height_above(place.plane, grid),
         votes,
-        find_fixation(list(views.values()), (place.low + place.high) / 2),
-        VolumetricRule(
-            components=params.components,
-            color_pixels=params.color_pixels,
-            least_posterior=params.least_posterior,
-            fixation_radius=params.fixation_radius,
-            pair_weight=params.pair_weight,
-            vote_scale=params.vote_scale,
-            iterations=params.iterations,
-            stop_share=params.stop_share,
-        ),
+        find_fixation(list(views.values()), place.box.centre),
+        make_rule(VolumetricRule, params),
         np.random.default_rng(job.seed),
         job.progress.note,
     )

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from threedfs.depth.zncc import MISSING
 from threedfs.frames.scale import scale_camera
 from threedfs.geometry.rigid import invert
 from threedfs.stereo.sweep import improve_planes, refine_depth
@@ -71,8 +72,8 @@ def match_patches(
     reference : View
     grey : (H, W) float32
         Centred grey levels, `MISSING` where the image shows nothing.
-    neighbours, images : sequences of View and of (H, W) float32
-        What the patch is sought in, in the same form.
+    neighbours, images : sequences of View and of (H2, W2) float32
+        What the patch is sought in, in the same form; each may have a shape of its own.
     measured : (H, W) float64
         Inverse depth to start from, NaN where there is none.
     wanted : (H, W) bool
@@ -105,11 +106,12 @@ def match_patches(
     )
     planes = None
     for level in reversed(range(levels)):
-        shape = tuple(-(-side // 2**level) for side in grey.shape)
+        shape = _shape_at(level, grey.shape)
         view = _resize_view(reference, shape)
         small = _shrink(grey, shape)
-        stack = np.stack([_shrink(image, shape) for image in images])
-        views = (stack, *neighbour_maps(view, [_resize_view(each, shape) for each in neighbours]))
+        shrunk = [_shrink(image, _shape_at(level, image.shape)) for image in images]
+        resized = [_resize_view(each, image.shape) for each, image in zip(neighbours, shrunk, strict=True)]
+        views = (_stack(shrunk), *neighbour_maps(view, resized))
         if planes is None:
             planes = guess_planes(_sample(measured, shape), near, far, np.random.default_rng(seed))
         else:
@@ -166,6 +168,19 @@ def neighbour_maps(reference: View, neighbours: Sequence[View]) -> tuple[np.ndar
     infinity = [view.camera.px_from_cam @ relative[:3, :3] @ back for view, relative in pairs]
     epipole = [view.camera.px_from_cam @ relative[:3, 3] for view, relative in pairs]
     return np.array(infinity), np.array(epipole)
+
+
+def _shape_at(level: int, shape: tuple[int, int]) -> tuple[int, int]:
+    return tuple(-(-side // 2**level) for side in shape)
+
+
+def _stack(images: Sequence[np.ndarray]) -> np.ndarray:
+    """Stack images of any shapes: (N, H, W) float32, `MISSING` beyond each."""
+    shape = np.max([image.shape for image in images], axis=0)
+    stack = np.full((len(images), *shape), MISSING)
+    for place, image in zip(stack, images, strict=True):
+        place[: image.shape[0], : image.shape[1]] = image
+    return stack
 
 
 def _resize_view(view: View, shape: tuple[int, int]) -> View:

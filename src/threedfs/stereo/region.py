@@ -5,21 +5,19 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import ConvexHull
 
-from threedfs.geometry.grid import box_corners
 from threedfs.geometry.projection import pixel_grid, project
-from threedfs.types import View
+from threedfs.types import Box, View
 
 
-def mask_box(view: View, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+def mask_box(view: View, box: Box) -> np.ndarray:
     """Mark the pixels of a view whose line of sight meets a box: (H, W) bool; all, where it reaches behind the camera.
 
     Parameters
     ----------
     view : View
-    low, high : (3,) float64
-        Opposite corners of the box, its sides along the axes of the world, scene units.
+    box : Box
     """
-    places, depth = project(view, box_corners(low, high))
+    places, depth = project(view, box.corners())
     if depth.min() <= 0:
         return np.ones(view.camera.shape, bool)
     u, v = pixel_grid(view.camera)

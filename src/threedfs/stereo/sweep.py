@@ -151,4 +151,4 @@ def _draw(state):
 def _alike(plane, other, focal):
     """Say whether two planes differ by less than refinement would."""
     apart = abs(plane[1] - other[1]) + abs(plane[2] - other[2])
-    return abs(plane[0] - other[0]) < 1e-4 * other[0] and apart < 0.05 * other[0] / focal
+    return abs(plane[0] - other[0]) < 5e-4 * other[0] and apart < 0.1 * other[0] / focal

@@ -57,8 +57,7 @@ def digest_code(module: str, *more: str) -> Code:
     root = _package_folder(package)
     found, pending, libraries = {}, set(), set()
     for start in (module, *more):
-        if _source_file(root, start) is None:
-            raise ModuleNotFoundError(f"no module named {start} under {root}")
+        find_source(start)
         pending |= _with_parents(start)
     while pending:
         name = pending.pop()
@@ -74,6 +73,21 @@ def digest_code(module: str, *more: str) -> Code:
                 libraries.add(imported.partition(".")[0])
     text = "\n".join(f"{name} {found[name]}" for name in sorted(found))
     return Code(hashlib.sha256(text.encode()).hexdigest(), tuple(sorted(libraries)))
+
+
+def find_source(module: str) -> Path:
+    """Return the file of a module, without importing it.
+
+    Raises
+    ------
+    ModuleNotFoundError
+        If there is no such module.
+    """
+    root = _package_folder(module.partition(".")[0])
+    path = _source_file(root, module)
+    if path is None:
+        raise ModuleNotFoundError(f"no module named {module} under {root}")
+    return path
 
 
 @lru_cache(maxsize=256)

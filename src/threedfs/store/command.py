@@ -1,16 +1,22 @@
-"""Run one job of the workflow: its log, its last line, its exit status."""
+"""Run one job of the workflow: its log, its last lines, its exit status."""
 
 from __future__ import annotations
 
 import sys
+import time
 import traceback
-from collections.abc import Mapping, Sequence
+from collections import defaultdict
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, TextIO
 
 from threedfs.errors import UserError
 from threedfs.progress import Progress
-from threedfs.store.perform import Inputs, perform
+from threedfs.store.action import Inputs, Task
+from threedfs.store.arguments import fit_inputs, read_arguments, read_order
+from threedfs.store.each import Chain, Fault, Passage, perform_each
+from threedfs.store.perform import perform
 
 
 class Tee:
@@ -48,6 +54,7 @@ def run_job(
     seed: int,
     refusal: str = "",
     modules: Sequence[str] = (),
+    package: str = "threedfs",
 ) -> None:
     """Perform one job and exit with status 1 if it fails.
 
@@ -55,44 +62,121 @@ def run_job(
 
     Parameters
     ----------
-    stage, inputs, outputs, settings, store, threads, seed, modules
-        As `perform` takes them.
+    stage, inputs, outputs, settings, seed, modules, package
+        As a `Task` has them; of a folder with one file for each keyframe, a stage may take the list of files.
     wildcards : mapping of str to str
         All wildcards of the rule. The sequence only names the job in messages, so that two sequences of the same
         content share their work.
     labels : mapping of str to JSON values
         What the configuration says of this sequence, names that a stage writes into its output among it; given to the
         stage like wildcards. All of it counts.
-    log : Path
+    store, log : Path
+    threads : int
     refusal : str
         Why the job cannot be done, if that is known before.
     """
+    started = time.monotonic()
     identity = {name: value for name, value in wildcards.items() if name != "sequence"}
-    label = " ".join([wildcards.get("sequence", "all sequences"), *identity.values()])
+    label = f"{stage} of {' '.join([_name_sequence(wildcards), *identity.values()])}"
+    with _logged(log, label) as (file, streams):
+        if refusal:
+            raise UserError(refusal)
+        arguments = read_arguments(f"{package}.stages.{stage}")
+        order = read_order(inputs["keyframes"]) if inputs.get("keyframes") else None
+        fitting = fit_inputs(arguments, inputs, order=order)
+        task = Task(stage, fitting, outputs, settings, {**identity, **labels}, seed, modules, package)
+        progress = Progress(label, streams)
+        outcome = perform(task, store, progress=progress, threads=threads)
+        how = "taken from the store" if outcome.hit else "done"
+        progress.note(f"{how} in {time.monotonic() - started:.1f} s")
+        _name_actions([outcome.key], file)
+
+
+def run_keyframes(
+    rule: str,
+    stages: Sequence[str],
+    inputs: Inputs,
+    outputs: Mapping[str, Path],
+    settings: Mapping[str, Mapping[str, Any]],
+    wildcards: Mapping[str, str],
+    labels: Mapping[str, Any],
+    *,
+    store: Path,
+    log: Path,
+    threads: int,
+    seed: int,
+    keyframes: Sequence[str] | None = None,
+    package: str = "threedfs",
+) -> None:
+    """Perform a chain of stages for every keyframe and exit with status 1 if any of it fails.
+
+    Keyframes that are refused are told at the end, after the others are done.
+
+    Parameters
+    ----------
+    rule : str
+        Names the job in messages.
+    stages, inputs, outputs, settings, labels, seed, package
+        As a `Chain` has them; `keyframes` among the inputs is keyframes.json.
+    wildcards : mapping of str to str
+        The sequence, which only names the job.
+    store, log : Path
+    threads : int
+        Keyframes worked on at once.
+    keyframes : sequence of str or None
+        Those to work on, if not all.
+    """
+    sequence = _name_sequence(wildcards)
+    with _logged(log, f"{rule} of {sequence}") as (file, streams):
+        order = read_order(inputs["keyframes"])
+        found = perform_each(
+            Chain(tuple(stages), inputs, outputs, settings, labels, seed, package),
+            order if keyframes is None else keyframes,
+            order,
+            store,
+            announce=lambda stage, keyframe: Progress(f"{stage or rule} of {sequence} {keyframe}", streams),
+            threads=threads,
+        )
+        _name_actions([outcome.key for passage in found.values() for outcome in passage.outcomes], file)
+        faults = _gather_faults(found)
+        for fault, names in faults.items():
+            others = f" and {len(names) - 1} more" if len(names) > 1 else ""
+            label = f"{fault.stage or rule} of {sequence} {names[0]}{others}"
+            told = f"threedfs: {label}: {fault.sentence}" if fault.sentence else f"{label}:\n{fault.trace.rstrip()}"
+            print(told, file=streams)
+    if faults:
+        sys.exit(1)
+
+
+def _gather_faults(found: Mapping[str, Passage]) -> dict[Fault, list[str]]:
+    """Return each fault once, with the keyframes that have it."""
+    faults = defaultdict(list)
+    for keyframe, passage in found.items():
+        if passage.fault:
+            faults[passage.fault].append(keyframe)
+    return dict(faults)
+
+
+def _name_sequence(wildcards: Mapping[str, str]) -> str:
+    return wildcards.get("sequence", "all sequences")
+
+
+def _name_actions(keys: Sequence[str], log: TextIO) -> None:
+    """Write into the log what was done; it ends with that if all went well."""
+    log.writelines(f"action {key}\n" for key in keys or ["none"])
+
+
+@contextmanager
+def _logged(log: Path, label: str) -> Iterator[tuple[TextIO, Tee]]:
+    """Give the log, and what writes to it and the terminal; a fault goes there, and ends the process with status 1."""
     log.parent.mkdir(parents=True, exist_ok=True)
     with open(log, "w", encoding="utf-8") as file:
-        progress = Progress(f"{stage} of {label}", Tee(file, sys.stderr))
+        streams = Tee(file, sys.stderr)
         try:
-            if refusal:
-                raise UserError(refusal)
-            outcome = perform(
-                stage,
-                inputs,
-                outputs,
-                settings,
-                {**identity, **labels},
-                store,
-                progress=progress,
-                threads=threads,
-                seed=seed,
-                modules=modules,
-            )
+            yield file, streams
         except UserError as fault:
-            print(f"threedfs: {stage} of {label}: {fault}", file=Tee(file, sys.stderr))
+            print(f"threedfs: {label}: {fault}", file=streams)
             sys.exit(1)
         except BaseException:
             traceback.print_exc(file=file)
             raise
-        how = "taken from the store" if outcome.hit else "done"
-        progress.note(f"{how} in {outcome.seconds:.1f} s")
-        print(f"action {outcome.key}", file=file)

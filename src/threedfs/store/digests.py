@@ -6,6 +6,7 @@ import hashlib
 import json
 import os
 from collections.abc import Mapping
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -100,17 +101,25 @@ class InputDigests:
         if isinstance(value, list):
             return [[path.name, self.any(path)] for path in value]
         if keyframe is not None and value.suffix == ".json" and value.is_file():
-            try:
-                content = json.loads(value.read_text(encoding="utf-8"))
-            except ValueError:
-                content = None  # a user's file that is no JSON: the stage says so
-            if isinstance(content, dict) and content.get("schema") == KEYFRAMES.name:
-                return digest_value(content["keyframes"].get(keyframe))
+            entries = _read_keyframes(value, *_stamp(value))
+            if entries is not None:
+                return digest_value(entries.get(keyframe))
         return self.any(value)
 
     def _note(self, path: Path) -> Path:
         name = hashlib.sha256(os.path.abspath(path).encode()).hexdigest()
         return self.folder / name[:2] / f"{name}.json"
+
+
+@lru_cache(maxsize=8)
+def _read_keyframes(path: Path, *_stamp: int) -> dict[str, Any] | None:
+    """Return the entries of a keyframes file, or None for any other; the stamp makes the cache notice edits."""
+    try:
+        content = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError:
+        return None  # a user's file that is no JSON: the stage says so
+    is_keyframes = isinstance(content, dict) and content.get("schema") == KEYFRAMES.name
+    return content["keyframes"] if is_keyframes else None
 
 
 def _stamp(path: Path) -> list[int]:

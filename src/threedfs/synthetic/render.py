@@ -5,14 +5,13 @@ from __future__ import annotations
 import numpy as np
 
 from threedfs.errors import UserError
-from threedfs.geometry.grid import box_corners
 from threedfs.geometry.projection import pixel_grid, project
 from threedfs.geometry.raycast import Hits, RayCaster
 from threedfs.geometry.vectors import dot, normalise
 from threedfs.synthetic.scene import Scene
 from threedfs.synthetic.shadow import CastLight
 from threedfs.synthetic.table import enter_box
-from threedfs.types import View
+from threedfs.types import Box, View
 
 # Supersampling resolves a little more than the pixel: textures keep detail down to this share of it.
 _FOOTPRINT = 0.7
@@ -95,7 +94,7 @@ class Renderer:
         """Cast only the rays inside the projected bounding box of the object."""
         vertices = self.scene.solid.mesh.vertices
         low, high = vertices.min(axis=0), vertices.max(axis=0)
-        pixels, depth = project(view, box_corners(low, high))
+        pixels, depth = project(view, Box(np.eye(3), low, high).corners())
         if np.all(depth > 0):
             u, v = pixel_grid(view.camera)
             near = (u >= pixels[:, 0].min() - 2) & (u <= pixels[:, 0].max() + 2)

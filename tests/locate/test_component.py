@@ -1,12 +1,12 @@
-"""Property tests of the choice of the object's component, its box and its field."""
+"""Property tests of the choice of the object's component, its box and its foot."""
 
 import numpy as np
 import pytest
 
 from threedfs.geometry.grid import voxel_centres
-from threedfs.object.box import enclose_object, measure_thickness
-from threedfs.object.component import choose_component, choose_standing_component, mark_points
-from threedfs.object.field import add_foot, height_above, mask_field
+from threedfs.locate.box import enclose_object, measure_thickness
+from threedfs.locate.component import choose_component, choose_standing_component, mark_points
+from threedfs.locate.height import add_foot, height_above
 from threedfs.types import Plane, VoxelGrid
 
 GRID = VoxelGrid(np.zeros(3), 0.1, (40, 40, 30))
@@ -88,10 +88,11 @@ def test_box_holds_the_object_and_its_foot():
     """Exact: from face to face, down to the plane, and the margin shared by both sides."""
     voxels = np.zeros(GRID.shape, bool)
     voxels[16:24, 17:24, 8:14] = True
-    low, high = enclose_object(voxels, GRID, TABLE, margin=0.5)
+    box = enclose_object(voxels, GRID, TABLE, margin=0.5)
     longest = 1.35 - 0.40  # along z, from half a voxel below the plane to the top of voxel 13
-    np.testing.assert_allclose(low, np.array([1.55, 1.65, 0.40]) - 0.25 * longest, atol=1e-12)
-    np.testing.assert_allclose(high, np.array([2.35, 2.35, 1.35]) + 0.25 * longest, atol=1e-12)
+    corners = box.corners()
+    np.testing.assert_allclose(corners.min(axis=0), np.array([1.55, 1.65, 0.40]) - 0.25 * longest, atol=1e-12)
+    np.testing.assert_allclose(corners.max(axis=0), np.array([2.35, 2.35, 1.35]) + 0.25 * longest, atol=1e-12)
 
 
 @pytest.mark.parametrize(("side", "thickness"), [((8, 9, 5), 0.5), ((20, 1, 20), 0.1), ((3, 3, 3), 0.3)])
@@ -116,20 +117,6 @@ def test_foot_reaches_the_plane_straight_below():
     expected = np.zeros(GRID.shape, bool)
     expected[16:24, 17:24, 4:14] = True
     assert (owned == expected).all()
-
-
-def test_field_is_negative_in_the_object_alone():
-    """Property: others and what is under the plane become empty; the zero level beside the object stays in place."""
-    interior = blocks()
-    interior[:, :, :5] = True
-    sdf = np.where(interior, np.float32(-0.5), np.float32(0.25))
-    owned = np.zeros(GRID.shape, bool)
-    owned[16:24, 17:24, 5:14] = True
-    field = mask_field(sdf, owned, height_above(TABLE, GRID), GRID.spacing)
-    assert ((field < 0) == owned).all()
-    assert (field[15, 17:24, 6:14] == np.float32(0.25)).all()
-    assert field[20, 20, 5] == pytest.approx(-0.5)
-    assert field[20, 20, 4] == pytest.approx(0.5, abs=1e-5), "half a voxel below the plane"
 
 
 def test_an_uneven_floor_does_not_join_the_object_with_the_wall():

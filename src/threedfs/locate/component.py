@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 
-from threedfs.geometry.grid import voxel_index
+from threedfs.geometry.grid import voxel_index, world_from_index
 from threedfs.types import VoxelGrid
 
 
@@ -150,7 +150,7 @@ def _count_support(labels: np.ndarray, holds: np.ndarray, count: int) -> np.ndar
 
 def _distance(labels: np.ndarray, box: tuple[slice, ...], label: int, grid: VoxelGrid, point: np.ndarray) -> float:
     index = np.argwhere(labels[box] == label) + [part.start for part in box]
-    return float(np.sqrt(((grid.origin + grid.spacing * index - point) ** 2).sum(axis=1).min()))
+    return float(np.sqrt(((world_from_index(grid, index) - point) ** 2).sum(axis=1).min()))
 
 
 def _touched_faces(box: tuple[slice, ...], shape: tuple[int, ...]) -> int:

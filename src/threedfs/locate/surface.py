@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from threedfs.geometry.grid import world_from_index
 from threedfs.types import VoxelGrid
 
 
@@ -35,15 +36,15 @@ def zero_crossings(grid: VoxelGrid, sdf: np.ndarray, seen: np.ndarray) -> tuple[
         b = sdf[tuple(high.T)].astype(np.float64)
         index = low.astype(np.float64)
         index[:, axis] += a / (a - b)
-        points.append(grid.origin + grid.spacing * index)
+        points.append(world_from_index(grid, index))
         normals.append(_gradient(sdf, low) + _gradient(sdf, high))
-    normal = np.concatenate(normals)
+    normal = np.concatenate(normals) @ grid.axes
     length = np.linalg.norm(normal, axis=1, keepdims=True)
     return np.concatenate(points), normal / np.where(length > 0, length, 1)
 
 
 def _gradient(sdf: np.ndarray, index: np.ndarray) -> np.ndarray:
-    """Central differences (N, 3) of the field at voxels (N, 3), one-sided at the border of the grid."""
+    """Central differences (N, 3) of the field along the grid's axes at voxels (N, 3), one-sided at its border."""
     columns = []
     for axis in range(3):
         step = np.eye(3, dtype=np.int64)[axis]

@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from threedfs.errors import UserError
+from threedfs.types import Box
 
 
-def scene_region(
-    points: np.ndarray, deviations: float, fixation: np.ndarray, least_reach: float, reach: float
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the corners (low, high) of the region of interest (Sec. 3.4.1).
+def scene_region(points: np.ndarray, deviations: float, fixation: np.ndarray, least_reach: float, reach: float) -> Box:
+    """Return the region of interest, along the axes of the world (Sec. 3.4.1).
 
     It reaches `deviations` standard deviations of the points to both sides of their median, axis by axis.
 
@@ -48,4 +47,4 @@ def scene_region(
         )
     low = np.clip(centre - spread, fixation - reach, fixation - least_reach)
     high = np.clip(centre + spread, fixation + least_reach, fixation + reach)
-    return low, high
+    return Box(np.eye(3), low, high)

@@ -4,19 +4,24 @@ import numpy as np
 import pytest
 
 from threedfs.errors import UserError
-from threedfs.fusion.fixation import find_fixation, find_up, viewing_distance
-from threedfs.fusion.region import scene_region
-from threedfs.fusion.support import SupportRule, find_support, settle_support
-from threedfs.fusion.surface import zero_crossings
 from threedfs.geometry.grid import cover_box, voxel_centres
 from threedfs.geometry.plane import fit_plane
 from threedfs.geometry.rigid import look_at, make_transform
-from threedfs.types import Camera, View
+from threedfs.locate.fixation import find_fixation, find_up, viewing_distance
+from threedfs.locate.region import scene_region
+from threedfs.locate.support import SupportRule, find_support, settle_support
+from threedfs.locate.surface import zero_crossings
+from threedfs.types import Box, Camera, View
 
 RULE = SupportRule(tolerance=0.015, doublings=3, reach=0.5, max_tilt=75.0, min_share=0.3, candidates=2000)
 UP = np.array([0.0, 0, 1])
 SIGNS = [(1, 1), (1, -1), (-1, 1), (-1, -1)]
 CAMERA = Camera(160, 120, 150.0, 150.0, 79.5, 59.5)
+ANGLES = 0.1 + 2 * np.pi * np.arange(12) / 12
+ORBIT = [
+    View("", CAMERA, look_at(np.array([1.2 * np.cos(a), 1.2 * np.sin(a), 0.9]), np.array([0, 0, 0.2]), UP))
+    for a in ANGLES
+]
 
 
 def patch(rng, count, corner, across, down, normal, noise):
@@ -170,7 +175,7 @@ def test_least_squares_plane_is_exact():
 
 def test_zero_crossings_lie_on_the_surface_and_not_beside_unseen_space():
     """Exact: of a linear field, its plane; the border of unseen voxels is none."""
-    grid = cover_box(np.zeros(3), np.ones(3), 10)
+    grid = cover_box(Box(np.eye(3), np.zeros(3), np.ones(3)), 10)
     sdf = (voxel_centres(grid) @ UP - 0.52).astype(np.float32)
     seen = np.ones(grid.shape, np.uint8)
     seen[:5] = 0
@@ -181,27 +186,28 @@ def test_zero_crossings_lie_on_the_surface_and_not_beside_unseen_space():
     np.testing.assert_allclose(normals[inner], np.tile(UP, (inner.sum(), 1)), atol=1e-6)
 
 
-def test_fixation_is_where_the_axes_meet(table):
-    """Exact: every view of the table looks at (0, 0, 0.2); a far centre of one percent of a view moves it little."""
-    fixation = find_fixation(table.views, np.array([0.0, 0.0, 0.1]))
+def test_fixation_is_where_the_axes_meet():
+    """Exact: every view looks at (0, 0, 0.2); a far centre of one percent of a view moves it little."""
+    fixation = find_fixation(ORBIT, np.array([0.0, 0.0, 0.1]))
     np.testing.assert_allclose(fixation, [0, 0, 0.2], atol=0.003)
-    assert viewing_distance(table.views, fixation) == pytest.approx(np.hypot(1.2, 0.7), rel=0.01)
+    assert viewing_distance(ORBIT, fixation) == pytest.approx(np.hypot(1.2, 0.7), rel=0.01)
 
 
 @pytest.mark.parametrize("quarter_turns", [0, 1, 2, 3])
-def test_up_is_found_however_the_phone_was_held(table, quarter_turns):
+def test_up_is_found_however_the_phone_was_held(quarter_turns):
     """Property: rolling every camera about its axis by quarter turns leaves up where it is."""
     angle = quarter_turns * np.pi / 2
     c, s = np.round([np.cos(angle), np.sin(angle)])
     roll = make_transform(np.array([[c, -s, 0], [s, c, 0], [0, 0, 1]]), np.zeros(3))
-    views = [View(view.name, view.camera, roll @ view.cam_from_world) for view in table.views]
+    views = [View(view.name, view.camera, roll @ view.cam_from_world) for view in ORBIT]
     assert find_up(views, np.array([0, 0, 0.2])) @ UP > 0.99
 
 
 def test_region_is_the_papers_within_limits():
     """Exact: median plus and minus two deviations, but not farther nor nearer than the reaches."""
     points = np.random.default_rng(0).normal([1, 2, 3], [0.01, 0.2, 0.5], (1000, 3))
-    low, high = scene_region(points, 2.0, np.array([1.0, 2, 3]), least_reach=0.1, reach=0.6)
+    region = scene_region(points, 2.0, np.array([1.0, 2, 3]), least_reach=0.1, reach=0.6)
+    low, high = region.low, region.high
     centre, spread = np.median(points, axis=0), points.std(axis=0)
     np.testing.assert_allclose([low[0], high[0]], [0.9, 1.1])
     np.testing.assert_allclose([low[1], high[1]], [centre[1] - 2 * spread[1], centre[1] + 2 * spread[1]])

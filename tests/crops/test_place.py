@@ -1,0 +1,77 @@
+"""Exact, property: where crops lie, how large they are, and the depths searched in them."""
+
+import numpy as np
+import pytest
+
+from threedfs.crops.depth_range import expect_crop_range
+from threedfs.crops.place import cut_view, find_window, place_crops, shrink_view
+from threedfs.geometry.projection import project
+from threedfs.types import Box, Camera, View
+
+CAMERA = Camera(1280, 960, 1000.0, 1000.0, 640.0, 480.0)
+BOX = Box(np.eye(3), np.array([-0.2, -0.1, -0.1]), np.array([0.2, 0.1, 0.1]))
+
+
+def view_from(distance, across=0.0, name="a"):
+    """A camera that looks along z at the origin's plane from a distance, moved sideways."""
+    pose = np.eye(4)
+    pose[:3, 3] = (across, 0.0, distance)
+    return View(name, CAMERA, pose)
+
+
+@pytest.mark.parametrize("pixels", [5_000, 20_000, 60_000])
+def test_crops_hold_the_box_and_have_pixels_of_one_size_there(pixels):
+    views = [view_from(1.5), view_from(2.5, 0.3), view_from(4.0)]
+    crops = place_crops(views, BOX.corners(), 0.05, pixels)
+    for crop in crops:
+        places, _ = project(crop, BOX.corners())
+        assert (places >= -0.5).all()
+        assert (places <= np.array([crop.camera.width, crop.camera.height]) - 0.5).all()
+    areas = [crop.camera.width * crop.camera.height for crop in crops]
+    assert np.mean(areas) <= pixels * 1.05  # sides are rounded up to whole pixels
+    sizes = np.array([crop.cam_from_world[2, 3] / crop.camera.fx for crop in crops])
+    native = np.array([view.cam_from_world[2, 3] / view.camera.fx for view in views])
+    assert sizes == pytest.approx(np.maximum(native, sizes.min()), rel=1e-9)
+
+
+def test_pixels_are_never_finer_than_the_source():
+    (crop,) = place_crops([view_from(2.0)], BOX.corners(), 0.05, 10**9)
+    assert crop.camera.fx == CAMERA.fx
+    assert crop.camera.cx % 1 == 0  # whole pixels are cut out
+
+
+def test_a_crop_and_its_frame_see_a_point_at_the_same_place():
+    view = view_from(2.0, 0.1)
+    window = find_window(view, BOX.corners(), 0.05)
+    crop = cut_view(view, window, 0.37)
+    point = np.array([[0.05, -0.02, 0.03]])
+    whole, part = project(view, point)[0], project(crop, point)[0]
+    assert part == pytest.approx((whole + 0.5 - (window.left, window.top)) * 0.37 - 0.5, abs=1e-9)
+
+
+def test_a_crop_ends_at_the_frame():
+    window = find_window(view_from(1.0, 0.55), BOX.corners(), 0.05)
+    assert window.right == CAMERA.width
+    assert window.left > 0
+
+
+@pytest.mark.parametrize("view", [view_from(1.0, 5.0), view_from(0.05)], ids=["beside", "inside"])
+def test_a_frame_that_does_not_show_the_box_is_taken_whole(view):
+    window = find_window(view, BOX.corners(), 0.05)
+    assert (window.left, window.top, window.right, window.bottom) == (0, 0, CAMERA.width, CAMERA.height)
+
+
+def test_whole_frames_keep_their_aspect():
+    assert shrink_view(view_from(2.0), 320).camera.shape == (240, 320)
+    assert shrink_view(view_from(2.0), 4000).camera == CAMERA
+
+
+def test_the_depth_range_holds_the_box_and_what_is_seen_behind_it():
+    view = cut_view(view_from(2.0), find_window(view_from(2.0), BOX.corners(), 0.05), 0.5)
+    behind = np.column_stack([np.zeros(100), np.zeros(100), np.linspace(0.0, 1.0, 100)])
+    beside = np.column_stack([np.full(100, 3.0), np.zeros(100), np.full(100, 9.0)])
+    near, far = expect_crop_range(view, np.vstack([behind, beside]), BOX.corners(), (0.1, 20.0), 0.95, 1.2)
+    assert near == pytest.approx(0.95 * 1.9)
+    assert far == pytest.approx(1.2 * 2.97, rel=1e-3)  # what lies beside is not in the crop
+    assert expect_crop_range(view, beside, BOX.corners(), (0.1, 20.0), 0.95, 1.2)[1] == pytest.approx(1.2 * 2.1)
+    assert expect_crop_range(view, behind, BOX.corners(), (0.1, 2.6), 0.95, 1.2)[1] == pytest.approx(2.6)

@@ -1,0 +1,21 @@
+"""Hand a rule's names to its stages, for every keyframe; the only adapter of rules that work on keyframes."""
+# ruff: noqa: F821 (Snakemake defines `snakemake` in a script)
+
+from pathlib import Path
+
+from threedfs.store.command import run_keyframes
+
+run_keyframes(
+    snakemake.rule,
+    snakemake.params.stages,
+    {name: Path(value) if value else None for name, value in snakemake.input.items()},
+    {name: Path(value) for name, value in snakemake.output.items()},
+    snakemake.params.settings,
+    dict(snakemake.wildcards.items()),
+    snakemake.params.get("labels", {}),
+    store=Path(snakemake.config["store"]),
+    log=Path(snakemake.log[0]),
+    threads=snakemake.threads,
+    seed=snakemake.params.seed,
+    keyframes=snakemake.params.get("keyframes"),
+)
