@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from threedfs.geometry.similarity import Similarity
-from threedfs.io.depth_maps import read_edges, read_semidense
 from threedfs.io.crops import Crop, write_crops
+from threedfs.io.depth_maps import read_edges, read_semidense
 from threedfs.io.keyframes import write_keyframes
 from threedfs.io.points import write_points
 from threedfs.io.poses import Poses, write_poses

@@ -5,8 +5,8 @@ import pytest
 import scenes
 
 from threedfs.errors import UserError
-from threedfs.io.depth_maps import Semidense, read_stereo, write_semidense, write_stereo
 from threedfs.io.crops import Crop, write_crops
+from threedfs.io.depth_maps import Semidense, read_stereo, write_semidense, write_stereo
 from threedfs.io.keyframes import write_keyframes
 from threedfs.io.volumes import write_support
 from threedfs.job import Job
