@@ -50,10 +50,12 @@ def make_job(threads):
     return Job(Progress("poses", io.StringIO()), {"made": "in a test"}, threads)
 
 
-def run(folder, pictures, *, threads=1, cameras=None, calibration=None, ordered=True, **settings):
+def run(folder, pictures, *, threads=1, cameras=None, calibration=None, ordered=True, described=75, **settings):
     folder.mkdir(exist_ok=True)
     frames, job = store_frames(folder / "frames.zarr.zip", pictures, ordered=ordered), make_job(threads)
-    find_features(frames=frames, features=folder / "features.zarr.zip", params=FeaturesParams(), job=job)
+    find_features(
+        frames=frames, features=folder / "features.zarr.zip", params=FeaturesParams(max_frames=described), job=job
+    )
     stage.run(
         frames=frames,
         features=folder / "features.zarr.zip",
@@ -122,6 +124,40 @@ def test_a_gap_of_blurred_frames_is_bridged(tmp_path, pictures, truth):
     )
     assert found.unposed == ("000020", "000025", "000030")
     check_against(found, truth, 0.02, 1.0)
+
+
+@pytest.fixture(scope="module")
+def dense(tmp_path_factory):
+    """Twice as many frames, keypoints in every other one."""
+    poses = walk(2 * FRAMES, 0.8)
+    pictures = [render(pose) for pose in poses]
+    folder = tmp_path_factory.mktemp("dense")
+    return folder, pictures, poses, run(folder / "one", pictures, described=FRAMES)
+
+
+def test_frames_without_keypoints_get_a_pose_and_see_points(dense):
+    _, _, poses, (found, points) = dense
+    assert found.unposed == ()
+    check_against(found, poses, 0.01, 0.5)
+    seen = np.bincount(points.track_frame, minlength=2 * FRAMES)
+    assert seen[1::2].min() > 0.5 * seen[::2].min() > 30
+
+
+def test_bytes_of_frames_without_keypoints_do_not_depend_on_threads(dense):
+    folder, pictures, *_ = dense
+    run(folder / "three", pictures, threads=3, described=FRAMES)
+    for name in ("features.zarr.zip", "poses.json", "points.zarr.zip"):
+        assert (folder / "one" / name).read_bytes() == (folder / "three" / name).read_bytes()
+
+
+def test_given_cameras_see_points_without_keypoints_too(tmp_path, dense):
+    _, pictures, poses, _ = dense
+    entries = [{"name": f"{5 * number}", "cam_to_world": invert(pose).tolist()} for number, pose in enumerate(poses)]
+    lens = {"width": 640, "height": 480, "fx": 660.0, "fy": 660.0, "cx": 320.0, "cy": 240.0}
+    (tmp_path / "cameras.json").write_text(json.dumps({**lens, "frames": entries}))
+    found, points = run(tmp_path / "run", pictures, cameras=tmp_path / "cameras.json", described=FRAMES)
+    assert len(found.views) == 2 * FRAMES
+    assert np.bincount(points.track_frame, minlength=2 * FRAMES).min() > 30
 
 
 def test_photos_without_order(tmp_path, pictures, truth):
