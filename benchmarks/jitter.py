@@ -63,10 +63,10 @@ def jitter_points(points: OrientedPoints, steps: np.ndarray, deviation: float, r
 def measure(results: Path, folder: Path, level: float, corrections: Mapping[str, DeformParams]) -> list[float]:
     """Return the F-scores at 0.5 % of the fused mesh and of those after each correction, at a level of jitter, %."""
     job = Job(Progress("jitter", io.StringIO()), {}, 2, 0)
-    support = results / "07_fusion/support.json"
+    support = results / "03_scene/support.json"
     place, rng = read_support(support), np.random.default_rng(0)
     deviation = level / 100 * place.box.longest
-    keyframes = read_keyframes(results / "03_keyframes/keyframes.json")
+    keyframes = read_keyframes(results / "04_crops/keyframes.json")
     steps = rng.normal(0, deviation, (len(keyframes), 3))
     write_keyframes(folder / "keyframes.json", jitter_cameras(keyframes, steps), {})
     points, engine = read_oriented_points(results / "08_densify/points.zarr.zip")

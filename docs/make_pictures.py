@@ -2,7 +2,7 @@
 
     python docs/make_pictures.py results/sample docs/pictures/sample.jpg [MASKS_OF MESH_OF]
 
-Four keyframes side by side; from top to bottom the frame with the mask's outline, the depth (near is red), the
+Four keyframes side by side; from top to bottom the crop with the mask's outline, the depth (near is red), the
 normals of the depth, and the mesh as the same camera sees it. Masks are those of gc_2d3d_pixel and the mesh that of
 sdf_2d3d_voxel where no methods are named.
 """
@@ -17,8 +17,8 @@ import numpy as np
 
 from threedfs.geometry.projection import normals_from_depth, pixel_grid
 from threedfs.geometry.raycast import RayCaster
+from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_depth_map
-from threedfs.io.frames import read_frames
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
 from threedfs.io.volumes import read_silhouettes
@@ -68,28 +68,36 @@ def shade(mesh: Mesh, keyframe: Keyframe) -> np.ndarray:
     return np.repeat(grey[..., None], 3, axis=-1)
 
 
+def fit(image: np.ndarray, width: int, height: int) -> np.ndarray:
+    """Return an image in the middle of a black tile, as large as fits."""
+    scale = min(width / image.shape[1], height / image.shape[0])
+    size = (max(1, round(scale * image.shape[1])), max(1, round(scale * image.shape[0])))
+    small = cv2.resize(image, size, interpolation=cv2.INTER_AREA if scale < 1 else cv2.INTER_LINEAR)
+    tile = np.zeros((height, width, 3), np.uint8)
+    top, left = (height - size[1]) // 2, (width - size[0]) // 2
+    tile[top : top + size[1], left : left + size[0]] = small
+    return tile
+
+
 def main(results: Path, picture: Path, masks: str = "gc_2d3d_pixel", surface: str = "sdf_2d3d_voxel") -> None:
     """Draw one picture: the masks of one method, the mesh of another."""
-    frames = read_frames(results / "02_poses/undistorted.zarr.zip")
-    keyframes = read_keyframes(results / "03_keyframes/keyframes.json")
+    crops = read_crops(results / "04_crops/crops.zarr.zip")
+    keyframes = read_keyframes(results / "04_crops/keyframes.json")
     silhouettes = read_silhouettes(results / f"11_object/{masks}/silhouettes.zarr.zip")
     mesh = read_mesh(results / f"11_object/{surface}/mesh.ply")
     names = list(keyframes)
-    columns = []
+    width, columns = WIDTH // COLUMNS, []
     for name in names[:: max(1, len(names) // COLUMNS)][:COLUMNS]:
         keyframe = keyframes[name]
         depth = read_depth_map(results / f"06_depth/{name}.zarr.zip").depth
         rows = [
-            outline(frames.image(name), silhouettes[name]),
+            outline(crops.image(name), silhouettes[name]),
             colour_depth(depth, keyframe),
             colour_normals(normals_from_depth(keyframe.view.camera, depth)),
             shade(mesh, keyframe),
         ]
-        columns.append(np.vstack(rows))
-    sheet = np.hstack(columns)
-    size = (WIDTH, round(sheet.shape[0] * WIDTH / sheet.shape[1]))
-    small = cv2.resize(sheet, size, interpolation=cv2.INTER_AREA)
-    cv2.imwrite(str(picture), small[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 88])
+        columns.append(np.vstack([fit(row, width, width) for row in rows]))
+    cv2.imwrite(str(picture), np.hstack(columns)[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 88])
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ import cv2
 import numpy as np
 from make_pictures import write_title
 
-from threedfs.io.frames import read_frames
+from threedfs.io.crops import read_crops
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.oriented_points import read_oriented_points
 from threedfs.types import Keyframe, OrientedPoints
@@ -44,13 +44,13 @@ def draw_points(points: OrientedPoints, colours: np.ndarray, keyframe: Keyframe)
 
 def draw_row(results: Path) -> np.ndarray:
     """Return the pictures of one sequence, side by side."""
-    frames = read_frames(results / "02_poses/undistorted.zarr.zip")
-    keyframes = read_keyframes(results / "03_keyframes/keyframes.json")
+    crops = read_crops(results / "04_crops/crops.zarr.zip")
+    keyframes = read_keyframes(results / "04_crops/keyframes.json")
     names = list(keyframes)
     points, _ = read_oriented_points(results / "08_densify/points.zarr.zip")
     tiles = []
     for name in (names[0], names[len(names) // 3]):
-        image, keyframe = frames.image(name), keyframes[name]
+        image, keyframe = crops.image(name), keyframes[name]
         away = points.normal @ keyframe.view.cam_from_world[2, :3]
         shades = np.repeat(np.clip(-255 * away, 0, 255).astype(np.uint8)[:, None], 3, axis=1)
         for tile in (image, draw_points(points, points.rgb, keyframe), draw_points(points, shades, keyframe)):

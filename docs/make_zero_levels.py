@@ -103,8 +103,8 @@ def crop(image: np.ndarray, shown: np.ndarray) -> np.ndarray:
 
 def main(results: Path, picture: Path, methods: Sequence[str]) -> None:
     """Draw one picture."""
-    keyframes = list(read_keyframes(results / "03_keyframes/keyframes.json").values())
-    support = read_support(results / "07_fusion/support.json")
+    keyframes = list(read_keyframes(results / "04_crops/keyframes.json").values())
+    support = read_support(results / "03_scene/support.json")
     meshes = {method: read_mesh(results / f"11_object/{method}/mesh.ply") for method in methods}
     truth = true_mesh(results)
     if truth is not None:

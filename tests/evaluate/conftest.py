@@ -20,8 +20,9 @@ from threedfs.io.keyframes import write_keyframes
 from threedfs.io.meshes import write_mesh
 from threedfs.io.metrics import read_metrics
 from threedfs.io.poses import Poses, write_poses
+from threedfs.io.volumes import write_silhouettes
 from threedfs.job import Job
-from threedfs.object.silhouettes import draw_source_silhouette
+from threedfs.object.silhouettes import draw_silhouette, draw_source_silhouette
 from threedfs.params.evaluate import EvaluateParams
 from threedfs.params.evaluate_reconstruction import EvaluateReconstructionParams
 from threedfs.progress import Progress
@@ -50,7 +51,7 @@ class Run:
         shared = ("poses", "keyframes", "frames", "cameras_truth", "mesh_truth", "intrinsics")
         calls = {
             "reconstruction.csv": (evaluate_reconstruction, ("depth", "depth_truth", "depth_scale", "depth_camera")),
-            "metrics.csv": (evaluate, ("mesh", "masks", "masks_truth")),
+            "metrics.csv": (evaluate, ("mesh", "masks", "silhouettes", "crops", "masks_truth")),
         }
         params = {
             "reconstruction.csv": changes.get("reconstruction", EvaluateReconstructionParams()),
@@ -104,6 +105,7 @@ def finished(tmp_path):
     write_keyframes(tmp_path / "keyframes.json", [Keyframe(view, (), 0.1, 2.0) for view in views[:6]], {})
     write_mesh(tmp_path / "mesh.ply", mesh)
     write_mesh(tmp_path / "truth.ply", truth)
+    write_silhouettes(tmp_path / "silhouettes.zarr.zip", {v.name: draw_silhouette(mesh, v) for v in views[:6]}, {})
     renderer = MeshRenderer(mesh)
     maps = []
     for view, pose in zip(views[:6], poses, strict=False):
@@ -129,6 +131,8 @@ def finished(tmp_path):
         "keyframes": tmp_path / "keyframes.json",
         "mesh": tmp_path / "mesh.ply",
         "masks": tmp_path / "masks",
+        "silhouettes": tmp_path / "silhouettes.zarr.zip",
+        "crops": tmp_path / "keyframes.json",
         "depth": maps,
         "frames": tmp_path / "frames.zarr.zip",
         "masks_truth": tmp_path / "masks_truth",

@@ -53,14 +53,14 @@ def test_image_points_undo_the_lens():
 
 
 def test_filmed_pixels_scale_about_pixel_corners():
-    pixels = filmed_pixels(CAMERA, (0.0, 0.0), (96, 128))
+    pixels = filmed_pixels(CAMERA, CAMERA, (0.0, 0.0), (96, 128))
     np.testing.assert_allclose(pixels[0, 0], [0.5, 0.5], atol=1e-12)
     np.testing.assert_allclose(pixels[-1, -1], [126.5, 94.5], atol=1e-12)
 
 
 def test_two_calibrations_meet_at_the_same_spot_of_the_sensor():
     lens = (0.1, 0.02)
-    pixels = filmed_pixels(CAMERA, lens, CAMERA.shape)
+    pixels = filmed_pixels(CAMERA, CAMERA, lens, CAMERA.shape)
     ideal = np.stack(np.meshgrid(np.arange(64), np.arange(48)), axis=-1)
     points = image_points(CAMERA, lens, pixels)
     np.testing.assert_allclose(points * (CAMERA.fx, CAMERA.fy) + (CAMERA.cx, CAMERA.cy), ideal, atol=1e-9)

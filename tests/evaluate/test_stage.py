@@ -10,7 +10,9 @@ import pytest
 from threedfs.errors import UserError
 from threedfs.io.depth_maps import read_depth_map, write_depth_map
 from threedfs.io.images import read_mask, write_mask
+from threedfs.io.keyframes import read_keyframes, write_keyframes
 from threedfs.io.meshes import read_mesh, write_mesh
+from threedfs.io.volumes import read_silhouettes, write_silhouettes
 from threedfs.params.evaluate import EvaluateParams
 from threedfs.params.evaluate_reconstruction import EvaluateReconstructionParams
 from threedfs.types import Mesh
@@ -83,7 +85,10 @@ def test_a_sequence_named_a_can_is_compared_with_a_cylinder(finished):
 def test_without_truth_there_is_still_a_table(finished):
     none = dict.fromkeys(("masks_truth", "cameras_truth", "mesh_truth"))
     found = finished.score(**none)
-    assert set(found) == {"frames_posed", "path_continuity", "path_turns", "reprojection_error"} | SOUNDNESS
+    assert (
+        set(found)
+        == {"frames_posed", "path_continuity", "path_turns", "reprojection_error", "masks_cut_off"} | SOUNDNESS
+    )
 
 
 @pytest.mark.parametrize("scale", [1000.0, 5000.0])
@@ -140,3 +145,21 @@ def test_refuses_cameras_of_other_frames(finished):
     path.write_text(json.dumps(content))
     with pytest.raises(UserError, match="make the names agree"):
         finished.score(cameras_truth=path)
+
+
+def test_masks_that_a_crop_cuts_off_are_counted(finished):
+    """Exact: none of whole frames; one of a crop whose left side is within the object."""
+    assert finished.score()["masks_cut_off"] == 0
+    entries = read_keyframes(finished.inputs["crops"])
+    masks = read_silhouettes(finished.inputs["silhouettes"])
+    name, entry = next(iter(entries.items()))
+    column = int(np.flatnonzero(masks[name].any(axis=0)).mean())
+    camera = entry.view.camera
+    cut = replace(camera, width=camera.width - column, cx=camera.cx - column)
+    entries[name] = replace(entry, view=replace(entry.view, camera=cut))
+    write_keyframes(finished.folder / "crops.json", list(entries.values()), {})
+    masks[name] = masks[name][:, column:]
+    write_silhouettes(finished.folder / "cut.zarr.zip", masks, {})
+    found = finished.score(crops=finished.folder / "crops.json", silhouettes=finished.folder / "cut.zarr.zip")
+    assert found["masks_cut_off"] == 1
+    assert f"side of its crop in 1 of 6 keyframes, so a part of it may be missing: {name};" in finished.log.getvalue()

@@ -56,7 +56,7 @@ SIGNATURES = {
         "dataset sequence intrinsics depth_scale depth_camera",
     ),
     "evaluate": (
-        "poses keyframes mesh masks frames masks_truth cameras_truth mesh_truth",
+        "poses keyframes mesh masks silhouettes crops frames masks_truth cameras_truth mesh_truth",
         "metrics",
         "dataset sequence method intrinsics",
     ),
