@@ -12,8 +12,8 @@ from threedfs.errors import UserError
 from threedfs.geometry.rigid import make_transform
 from threedfs.geometry.similarity import Similarity
 from threedfs.io.arrays import read_arrays
+from threedfs.io.crops import Crop, write_crops
 from threedfs.io.depth_maps import StereoMap, read_stereo, write_stereo
-from threedfs.io.frames import Frame, write_frames
 from threedfs.io.keyframes import write_keyframes
 from threedfs.io.points import write_points
 from threedfs.io.poses import Poses, write_poses
@@ -55,8 +55,9 @@ def folder(tmp_path_factory):
     """
     folder = tmp_path_factory.mktemp("densify")
     posed = [*VIEWS[:2], BETWEEN, *VIEWS[2:]]
-    frames = [Frame(view.name, rank, 0.0, 1.0, scenes.render(view)) for rank, view in enumerate(posed)]
-    write_frames(folder / "frames.zarr.zip", frames, JOB.header, ordered=True, source_shape=scenes.CAMERA.shape)
+    everywhere = np.ones(scenes.CAMERA.shape, bool)
+    crops = [Crop(view.name, scenes.render(view), everywhere) for view in VIEWS]
+    write_crops(folder / "crops.zarr.zip", crops, JOB.header, ordered=True, source_shape=scenes.CAMERA.shape)
     write_keyframes(folder / "keyframes.json", [Keyframe(view, (), 0.4, 2.5) for view in VIEWS], JOB.header)
     still = Similarity(1.0, np.eye(3), np.zeros(3))
     write_poses(folder / "poses.json", Poses(tuple(posed), (), (0.0, 0.0), still), JOB.header)
@@ -76,7 +77,7 @@ def folder(tmp_path_factory):
 
 def find_points(folder, cuda, **changes):
     densify.run(
-        undistorted=folder / "frames.zarr.zip",
+        crops=folder / "crops.zarr.zip",
         keyframes=folder / "keyframes.json",
         poses=folder / "poses.json",
         points=folder / "points.zarr.zip",

@@ -16,6 +16,7 @@ from threedfs.errors import UserError
 from threedfs.geometry.projection import backproject_map
 from threedfs.geometry.rigid import invert
 from threedfs.geometry.similarity import Similarity
+from threedfs.io.crops import Crop, write_crops
 from threedfs.io.depth_maps import write_edges
 from threedfs.io.depth_trials import read_depth_trial
 from threedfs.io.frames import Frame, write_frames
@@ -43,7 +44,9 @@ def scene(tmp_path_factory):
     folder = tmp_path_factory.mktemp("plane")
     views = scenes.views()
     frames = (Frame(view.name, int(view.name), 0.0, 1.0, scenes.render(view)) for view in views)
-    write_frames(folder / "undistorted.zarr.zip", frames, {}, ordered=False, source_shape=scenes.CAMERA.shape)
+    write_frames(folder / "frames.zarr.zip", frames, {}, ordered=False, source_shape=scenes.CAMERA.shape)
+    crops = (Crop(view.name, scenes.render(view), np.ones(scenes.CAMERA.shape, bool)) for view in views)
+    write_crops(folder / "crops.zarr.zip", crops, {}, ordered=False, source_shape=scenes.CAMERA.shape)
     scene_from_input, input_from_scene = (Similarity(scale, np.eye(3), np.zeros(3)) for scale in (1 / UNITS, UNITS))
     write_poses(folder / "poses.json", Poses(tuple(views), (), (0.0, 0.0), scene_from_input), {})
     write_keyframes(folder / "keyframes.json", [Keyframe(views[0], tuple(views[1:]), 0.6, 1.8)], {})
@@ -69,7 +72,8 @@ def scene(tmp_path_factory):
 def work(scene, folder, seed=0, **changes):
     """Run the stage; return what it wrote."""
     given = {
-        "undistorted": scene / "undistorted.zarr.zip",
+        "frames": scene / "frames.zarr.zip",
+        "crops": scene / "crops.zarr.zip",
         "keyframes": scene / "keyframes.json",
         "edges": scene / "edges.zarr.zip",
         "poses": scene / "poses.json",

@@ -25,9 +25,7 @@ from threedfs.stages import keyframes as stage
 def run_stage(make_ring, tmp_path):
     """Write the inputs of a ring of 72 frames and run the stage on them; `moved` gives some another pose."""
     ring = make_ring(count=72)
-    inputs = {
-        name: tmp_path / file for name, file in (("poses", "p.json"), ("points", "p.zip"), ("undistorted", "f.zip"))
-    }
+    inputs = {name: tmp_path / file for name, file in (("poses", "p.json"), ("points", "p.zip"), ("frames", "f.zip"))}
     blank = np.zeros((120, 160, 3), np.uint8)
     frames = [Frame(view.name, int(view.name), 0.0, 1.0, blank) for view in ring.views]
     write_points(inputs["points"], ring.points, {})
@@ -36,7 +34,7 @@ def run_stage(make_ring, tmp_path):
     def run(masks=None, name="out.json", ordered=True, moved=None, **changes):
         poses = {i: view.cam_from_world for i, view in enumerate(ring.views)} | (moved or {})
         views = tuple(replace(view, cam_from_world=poses[i]) for i, view in enumerate(ring.views))
-        write_frames(inputs["undistorted"], frames, {}, ordered=ordered, source_shape=(120, 160))
+        write_frames(inputs["frames"], frames, {}, ordered=ordered, source_shape=(120, 160))
         write_poses(inputs["poses"], Poses(views, (), (0.0, 0.0), same), {})
         job = Job(Progress("keyframes"), header={"made_by": "a test"})
         out = tmp_path / name

@@ -73,7 +73,7 @@ def make_scene(views: int = 8, shrink: float = 0.0, size: int = 40) -> tuple[Sce
         box,
         views={view.name: view for view in looks},
         images={name: image for name, (image, _, _) in shots.items()},
-        valid=valid,
+        valid=dict.fromkeys(shots, valid),
         superpixels={
             name: split_image(image, valid, blank, area=21.6, compactness=10.0) for name, (image, _, _) in shots.items()
         },

@@ -233,9 +233,10 @@ def test_border_of_an_undistorted_image_is_no_outline():
     scene, truth = make_scene(views=12)
     height = height_above(PLANE, scene.located.grid)
     solid = (scene.sdf < 0) & (height > 0)
-    valid = scene.valid.copy()
-    valid[:, : valid.shape[1] // 2] = False
-    cropped = {name: mask & valid for name, mask in truth.items()}
+    valid = {name: shown.copy() for name, shown in scene.valid.items()}
+    for shown in valid.values():
+        shown[:, : shown.shape[1] // 2] = False
+    cropped = {name: mask & valid[name] for name, mask in truth.items()}
     settings = {"ramp": 5, "tolerance": 0, "least_views": 99}
     whole, _ = fit_masks(scene.sdf, solid, height > 0, truth, scene.views, scene.valid, scene.located.grid, **settings)
     half, _ = fit_masks(scene.sdf, solid, height > 0, cropped, scene.views, valid, scene.located.grid, **settings)
@@ -271,7 +272,7 @@ def test_mask_goes_to_the_source_frame():
     view = look(0.3)
     mask = np.zeros(view.camera.shape, bool)
     mask[20:60, 30:80] = True
-    twice = distort_mask(mask, view.camera, (0.0, 0.0), (180, 240))
+    twice = distort_mask(mask, view.camera, view.camera, (0.0, 0.0), (180, 240))
     assert twice.shape == (180, 240) and np.array_equal(twice[1::2, 1::2][:, :], mask)
-    bent = distort_mask(mask, view.camera, (0.8, 0.0), view.camera.shape)
+    bent = distort_mask(mask, view.camera, view.camera, (0.8, 0.0), view.camera.shape)
     assert 0 < (bent ^ mask).sum() < 0.2 * mask.sum()

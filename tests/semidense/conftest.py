@@ -26,7 +26,8 @@ class Scene:
 
     @property
     def neighbours(self):
-        return [(view, self.images[view.name]) for view in self.keyframe.neighbours]
+        everywhere = np.ones((HEIGHT, WIDTH), bool)
+        return [(view, self.images[view.name], everywhere) for view in self.keyframe.neighbours]
 
 
 def _rays(view):

@@ -27,7 +27,7 @@ BOUNDS = (0.4, 2.5)
 
 
 def search(scene, u, v, low=BOUNDS[0], high=BOUNDS[1], neighbour=0, grey=None, other=None, other_valid=None, rule=RULE):
-    view, image = scene.neighbours[neighbour]
+    view, image, _ = scene.neighbours[neighbour]
     grey = to_grey(scene.image) if grey is None else grey
     other = to_grey(image) if other is None else other
     other_valid = np.ones(other.shape, bool) if other_valid is None else other_valid

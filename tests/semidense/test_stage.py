@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from threedfs.geometry.similarity import Similarity
+from threedfs.io.crops import Crop, write_crops
 from threedfs.io.depth_maps import read_edges, read_semidense
-from threedfs.io.frames import Frame, write_frames
 from threedfs.io.keyframes import write_keyframes
 from threedfs.io.points import write_points
 from threedfs.io.poses import Poses, write_poses
@@ -24,8 +24,9 @@ def test_stages_write_maps_of_the_keyframe(make_scene, tmp_path):
     scene = make_scene()
     views = [*scene.keyframe.neighbours, scene.keyframe.view]
     images = {**scene.images, "key": scene.image}
-    frames = (Frame(view.name, i, np.nan, 1.0, images[view.name]) for i, view in enumerate(views))
-    write_frames(tmp_path / "f.zip", frames, {}, ordered=False, source_shape=scene.depth.shape)
+    everywhere = np.ones(scene.depth.shape, bool)
+    crops = (Crop(view.name, images[view.name], everywhere) for view in views)
+    write_crops(tmp_path / "c.zip", crops, {}, ordered=False, source_shape=scene.depth.shape)
     count = len(scene.sparse)
     sees = np.full(count, len(views) - 1)
     points = SparsePoints(scene.sparse, np.zeros((count, 3), np.uint8), np.zeros(count), np.arange(count), sees)
@@ -33,7 +34,7 @@ def test_stages_write_maps_of_the_keyframe(make_scene, tmp_path):
     poses = Poses(tuple(views), (), (0.0, 0.0), Similarity(1.0, np.eye(3), np.zeros(3)))
     write_poses(tmp_path / "p.json", poses, {})
     write_keyframes(tmp_path / "k.json", [scene.keyframe], {})
-    inputs = {"undistorted": tmp_path / "f.zip", "keyframes": tmp_path / "k.json", "keyframe": "key"}
+    inputs = {"crops": tmp_path / "c.zip", "keyframes": tmp_path / "k.json", "keyframe": "key"}
     job = Job(Progress("semidense"))
 
     stage.run(

@@ -5,8 +5,8 @@ import pytest
 import scenes
 
 from threedfs.errors import UserError
+from threedfs.io.crops import Crop, write_crops
 from threedfs.io.depth_maps import Semidense, read_stereo, write_semidense, write_stereo
-from threedfs.io.frames import Frame, write_frames
 from threedfs.io.keyframes import write_keyframes
 from threedfs.io.volumes import write_support
 from threedfs.job import Job
@@ -25,15 +25,16 @@ def matched(tmp_path_factory):
     """A folder with the stereo maps of all five views, and their keyframes."""
     folder = tmp_path_factory.mktemp("stereo")
     views = scenes.views()
-    frames = [Frame(view.name, rank, 0.0, 1.0, scenes.render(view)) for rank, view in enumerate(views)]
-    write_frames(folder / "frames.zarr.zip", frames, JOB.header, ordered=True, source_shape=scenes.CAMERA.shape)
+    everywhere = np.ones(scenes.CAMERA.shape, bool)
+    crops = [Crop(view.name, scenes.render(view), everywhere) for view in views]
+    write_crops(folder / "crops.zarr.zip", crops, JOB.header, ordered=True, source_shape=scenes.CAMERA.shape)
     entries = [Keyframe(view, tuple(other for other in views if other is not view), 0.4, 2.5) for view in views]
     write_keyframes(folder / "keyframes.json", entries, JOB.header)
     nothing = np.full(scenes.CAMERA.shape, np.nan, np.float32)
     write_semidense(folder / "semidense.zarr.zip", Semidense(nothing, nothing), JOB.header)
     for view in views:
         stereo.run(
-            undistorted=folder / "frames.zarr.zip",
+            crops=folder / "crops.zarr.zip",
             keyframes=folder / "keyframes.json",
             semidense=folder / "semidense.zarr.zip",
             support=None,
@@ -93,7 +94,7 @@ def test_around_a_place_only_its_pixels_are_matched(matched, side):
         matched / "support.json", Support(plane, Box(np.eye(3), low, high), {"plane_noise": 0.001}), JOB.header
     )
     stereo.run(
-        undistorted=matched / "frames.zarr.zip",
+        crops=matched / "crops.zarr.zip",
         keyframes=matched / "keyframes.json",
         semidense=matched / "semidense.zarr.zip",
         support=matched / "support.json",

@@ -17,7 +17,7 @@ import pytest
 from threedfs.store.files import remove_abandoned
 
 RULES = (
-    "render calibrate frames features poses undistort keyframes cues depth consistency fuse_scene locate "
+    "render calibrate frames features poses keyframes shrink scout depth consistency fuse_scene locate crops cues "
     "fuse_object locate_object object evaluate_reconstruction evaluate collect all"
 ).split()
 FILMED = ("video.mp4", "cameras.json", "mesh.ply")
@@ -47,8 +47,9 @@ def test_lists_every_rule(project):
 
 def test_first_run_does_every_job_and_prints_the_summary(first_run):
     project, output = first_run
-    once = set(RULES) - {"render", "calibrate", "all", "cues", "depth"}
-    assert jobs_done(output) == Counter({**dict.fromkeys(once, 1), "cues": 2, "depth": 2})
+    once = set(RULES) - {"render", "calibrate", "all"}
+    two_keyframes, two_scopes = {"scout": 2, "cues": 2}, {"depth": 4, "consistency": 2}
+    assert jobs_done(output) == Counter({**dict.fromkeys(once, 1), **two_keyframes, **two_scopes})
     assert re.search(r"sample fused_sdf +0.500", output)
     assert (project.folder / "results/metrics.csv").is_file()
 
@@ -71,16 +72,28 @@ def test_wiped_results_are_taken_from_the_store_with_the_same_bytes(finished, fi
 def test_changed_parameter_reruns_what_follows_and_flipped_back_nothing(finished):
     (finished.folder / "other.yaml").write_text("depth: {iterations: 7}\n")
     done = jobs_done(finished.run("--configfile", "other.yaml"))
-    assert done["depth"] == 2
-    fused = {"consistency", "fuse_scene", "locate", "fuse_object", "locate_object", "object"}
+    assert done["depth"] == 4  # of two keyframes, in the scene and in their crops
+    fused = {"consistency", "fuse_scene", "locate", "crops", "cues", "fuse_object", "locate_object", "object"}
     assert set(done) == {"depth", *fused, "evaluate_reconstruction", "evaluate"}
     output = finished.run()
     assert jobs_done(output) == Counter()
-    assert jobs_taken(output)["depth"] == 2
+    assert jobs_taken(output)["depth"] == 4
+
+
+def test_changed_crops_rerun_what_follows_and_nothing_before(finished):
+    """Contract: neither frames, poses and keyframes nor the scene pass are done again; a dry run tells."""
+    (finished.folder / "other.yaml").write_text("crops: {pixels: 50000}\n")
+    listed = finished.run("--configfile", "other.yaml", "-n")
+    planned = Counter(re.findall(r"^(?:rule|checkpoint|localrule) (\w+):", listed, re.MULTILINE)) - Counter(["all"])
+    once = ("crops", "cues", "depth", "consistency", "fuse_object", "locate_object", "object")
+    assert planned == Counter([*once, "evaluate_reconstruction", "evaluate", "collect"])
+    assert "03_scene/06_depth" not in re.sub(r"^ +input:.*", "", listed, flags=re.MULTILINE)
+    output = finished.run("--configfile", "other.yaml")
+    assert jobs_taken(output) == Counter() and jobs_done(output)["depth"] == 2
 
 
 def test_changed_parameter_of_one_stage_of_a_rule_leaves_the_others(finished):
-    (finished.folder / "other.yaml").write_text("superpixels: {count: 77}\n")
+    (finished.folder / "other.yaml").write_text("superpixels: {area: 77}\n")
     output = finished.run("--configfile", "other.yaml")
     at_work = Counter(re.findall(r"^(\w+) of .*: at work", output, re.MULTILINE))
     assert at_work == Counter(superpixels=2) and set(jobs_done(output)) == {"cues"}
@@ -275,15 +288,17 @@ def test_variants_cut_again_with_their_settings_and_get_a_table(finished):
     assert "@" not in (finished.folder / "results/tables/iou.md").read_text()
 
 
-def test_where_depth_needs_stereo_whole_images_are_matched_before_the_object_is_found(finished):
+def test_where_depth_needs_stereo_the_scene_is_matched_whole_and_crops_around_the_object(finished):
     (finished.folder / "wide.yaml").write_text("methods: [deformed_sdf]\nkeyframes: {stereo_angle: 0}\n")
     done = jobs_done(finished.run("--configfile", "wide.yaml"))
-    assert done["stereo"] == done["stereo_check"] == done["depth"] == 2
-    results = finished.folder / "results/sample"
-    patches, depth = (
-        json.loads((results / f"{name}/000001.zarr.zip").read_text()) for name in ("05_stereo", "06_depth")
-    )
-    assert patches["inputs"]["support"] is None and depth["inputs"]["stereo"] is not None
+    assert done["stereo"] == done["stereo_check"] == done["depth"] == 4
+    for scope, box_is_known in (("03_scene/", False), ("", True)):
+        results = finished.folder / "results/sample" / scope
+        patches, depth = (
+            json.loads((results / f"{name}/000001.zarr.zip").read_text()) for name in ("05_stereo", "06_depth")
+        )
+        assert (patches["inputs"]["support"] is not None) == box_is_known
+        assert depth["inputs"]["stereo"] is not None
 
 
 def test_points_switched_off_need_no_stereo(finished):
@@ -311,13 +326,15 @@ def test_depth_experiment_tries_keyframes_that_have_a_true_depth_and_joins_the_t
         "frames",
         "features",
         "poses",
-        "undistort",
         "keyframes",
+        "crops",
         "depth_trial",
         "depth_experiment",
         "collect",
     )
     assert jobs_done(output) == Counter(once)
+    crops = json.loads((project.folder / "results/mug/04_crops/keyframes.json").read_text())
+    assert crops["inputs"]["support"] is None  # there is no object to find
     trial = json.loads((project.folder / "results/mug/12_depth_experiment/trials/000002.zarr.zip").read_text())
     assert trial["names"]["depth_scale"] == 5000 and trial["names"]["depth_settings"]["prior"] == "rotation_invariant"
     assert "own,mug,depth/all" in (project.folder / "results/metrics.csv").read_text()

@@ -45,6 +45,8 @@ rule evaluate:
         keyframes="results/{sequence}/03_keyframes/keyframes.json",
         mesh=mesh_of_method,
         masks="results/{sequence}/11_object/{method}/masks",
+        silhouettes="results/{sequence}/11_object/{method}/silhouettes.zarr.zip",
+        crops="results/{sequence}/04_crops/keyframes.json",
         frames="results/{sequence}/01_frames/frames.zarr.zip",
         masks_truth=given("truth_masks"),
         cameras_truth=given("truth_cameras"),

@@ -13,7 +13,7 @@ import zarr
 from threedfs.io.arrays import open_arrays, writing_arrays
 from threedfs.io.schema import Schema
 
-FRAMES = Schema("threedfs/frames/1", "frames or undistort")
+FRAMES = Schema("threedfs/frames/1", "frames")
 
 
 @dataclass(frozen=True)
@@ -49,8 +49,6 @@ class FrameStore:
     names : tuple of str
     indices : (N,) int64
     times, sharpness : (N,) float64
-    valid : (H, W) bool
-        Pixels that show the scene in every frame (undistortion leaves borders that do not).
     ordered : bool
         Whether neighbours in the list are neighbours in time (a video).
     skipped : int
@@ -65,7 +63,6 @@ class FrameStore:
     indices: np.ndarray
     times: np.ndarray
     sharpness: np.ndarray
-    valid: np.ndarray
     ordered: bool
     skipped: int
     shape: tuple[int, int]
@@ -84,7 +81,6 @@ def write_frames(
     *,
     ordered: bool,
     source_shape: tuple[int, int],
-    valid: np.ndarray | None = None,
     skipped: Any = 0,
 ) -> None:
     """Stream frames to an artifact; never more than one is held.
@@ -92,13 +88,10 @@ def write_frames(
     Parameters
     ----------
     frames : iterable of Frame
-    valid : (H, W) bool, optional
-        All true without one.
     skipped : int or callable
         Frames that could not be decoded; a callable is asked after the last frame.
     """
     names, indices, times, sharpness = [], [], [], []
-    shape = None
     with writing_arrays(path, FRAMES, header) as writer:
         for frame in frames:
             writer.append("images", frame.image, axes="frame, row, column, RGB")
@@ -106,13 +99,9 @@ def write_frames(
             indices.append(frame.index)
             times.append(frame.time)
             sharpness.append(frame.sharpness)
-            shape = frame.image.shape[:2]
-        if shape is None:
-            shape = (0, 0)
         writer.put("indices", np.array(indices, np.int64))
         writer.put("times", np.array(times, np.float64), unit="s")
         writer.put("sharpness", np.array(sharpness, np.float64))
-        writer.put("valid", np.ones(shape, bool) if valid is None else valid, axes="row, column")
         writer.attributes.update(
             names=names,
             ordered=ordered,
@@ -130,7 +119,6 @@ def read_frames(path: Path) -> FrameStore:
         indices=np.asarray(group["indices"][...]),
         times=np.asarray(group["times"][...]),
         sharpness=np.asarray(group["sharpness"][...]),
-        valid=np.asarray(group["valid"][...]),
         ordered=bool(group.attrs["ordered"]),
         skipped=int(group.attrs["skipped"]),
         shape=tuple(images.shape[1:3]),

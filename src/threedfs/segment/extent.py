@@ -12,8 +12,8 @@ from threedfs.segment.hull import fit_masks
 from threedfs.segment.joint import CutRule, segment_jointly
 from threedfs.segment.outline import largest_piece
 
-_RAMP, _TOLERANCE, _VIEWS = 3.0, 0.2, 4
-"""Of the fit to masks, coarser and more cautious than that of the result: voxels, share of views, views."""
+_RAMP, _TOLERANCE, _VIEWS = 3.0, 0.5, 4
+"""Of the fit to masks: voxels, share of the views, views. Half of the views may miss a part: a box needs no outline."""
 
 
 def find_extent(

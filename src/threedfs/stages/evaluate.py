@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from threedfs.crops.border import is_cut_off
 from threedfs.evaluate.cylinder import measure_cylinder
 from threedfs.evaluate.figures import Figure, cylinder_figures, mask_figures, mesh_figures, soundness_figures
 from threedfs.evaluate.masks import check_mask_size, intersection_over_union
@@ -20,7 +21,8 @@ from threedfs.io.images import read_mask
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
 from threedfs.io.metrics import write_metrics
-from threedfs.io.poses import read_poses
+from threedfs.io.poses import Poses, read_poses
+from threedfs.io.volumes import read_silhouettes
 from threedfs.job import Job
 from threedfs.object.silhouettes import draw_source_silhouette
 from threedfs.params.evaluate import EvaluateParams
@@ -33,6 +35,8 @@ def run(
     keyframes: Path,
     mesh: Path | None,
     masks: Path,
+    silhouettes: Path,
+    crops: Path,
     frames: Path,
     masks_truth: Path | None,
     cameras_truth: Path | None,
@@ -63,6 +67,7 @@ def run(
         aligned = Mesh(truth.from_scene.apply(surface.vertices), surface.faces)
     if masks_truth is not None:
         figures += _score_masks(masks_truth, masks, aligned, truth, selected, store, job)
+    figures.append(Figure("masks_cut_off", _count_cut_off(silhouettes, crops, solved, job), "masks"))
     if mesh_truth is not None and aligned is not None:
         exact = read_mesh(mesh_truth)
         figures += mesh_figures(measure_mesh(aligned, exact, params.mesh_thresholds, params.surface_samples, generator))
@@ -75,6 +80,19 @@ def run(
         [Metric(item.name, item.value, item.unit, dataset, sequence, method, item.keyframe) for item in figures],
     )
     job.progress.note(f"{len(figures)} figures of {len(selected)} keyframes")
+
+
+def _count_cut_off(silhouettes: Path, crops: Path, solved: Poses, job: Job) -> int:
+    """Count the silhouettes that reach a side of their crop where the frame goes on, and name them."""
+    whole = {view.name: view.camera for view in solved.views}
+    drawn, views = read_silhouettes(silhouettes), {name: entry.view for name, entry in read_keyframes(crops).items()}
+    cut = [name for name, mask in drawn.items() if is_cut_off(mask, views[name].camera, whole[name])]
+    if cut:
+        job.progress.note(
+            f"the object reaches the side of its crop in {len(cut)} of {len(drawn)} keyframes, so a part of it may be "
+            f"missing: {', '.join(cut)}; raise locate.box_margin, or set crops.whole"
+        )
+    return len(cut)
 
 
 def _score_masks(

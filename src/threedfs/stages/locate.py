@@ -36,6 +36,10 @@ _ROUNDS, _COLORS = 3, 20_000
 """Rounds of the coarse segmentation, and pixels drawn to learn colours from."""
 
 
+_FIELD_WEIGHT = 1.0
+"""Of the field, which may lack a part of the object, against what images show."""
+
+
 def run(
     *,
     scene: Path,
@@ -84,8 +88,22 @@ def run(
         shown = np.zeros_like(known)
         shown[part] = find_extent(
             Scene(located, volume.sdf[part], around, **images, semidense={}),
-            make_rule(GatherRule, rule, random_first=False, by_mean=rule.pair_edge == "mean", surface_links=True),
-            make_rule(CutRule, rule, components=rule.color_components, iterations=_ROUNDS, color_pixels=_COLORS),
+            make_rule(
+                GatherRule,
+                rule,
+                random_first=False,
+                by_mean=rule.pair_edge == "mean",
+                surface_links=True,
+                outer_margin=round(params.box_reach * found.box.longest / grid.spacing),
+            ),
+            make_rule(
+                CutRule,
+                rule,
+                components=rule.color_components,
+                iterations=_ROUNDS,
+                color_pixels=_COLORS,
+                sdf_weight=_FIELD_WEIGHT,
+            ),
             generator,
             job.progress.note,
         )
