@@ -55,10 +55,21 @@ def test_a_crop_ends_at_the_frame():
     assert window.left > 0
 
 
-@pytest.mark.parametrize("view", [view_from(1.0, 5.0), view_from(0.05)], ids=["beside", "inside"])
-def test_a_frame_that_does_not_show_the_box_is_taken_whole(view):
-    window = find_window(view, BOX.corners(), 0.05)
-    assert (window.left, window.top, window.right, window.bottom) == (0, 0, CAMERA.width, CAMERA.height)
+@pytest.mark.parametrize(
+    "view", [view_from(1.0, 5.0), view_from(0.05), view_from(-2.0)], ids=["beside", "inside", "behind"]
+)
+@pytest.mark.parametrize("others", [[], [view_from(1.5), view_from(2.5)]], ids=["alone", "among others"])
+def test_a_frame_that_does_not_show_the_box_is_taken_whole(view, others):
+    """Property: with an area as that of the crops, to which it makes no difference."""
+    assert find_window(view, BOX.corners(), 0.05) is None
+    whole, *crops = place_crops([view, *others], BOX.corners(), 0.05, 20_000)
+    assert whole.camera.width / whole.camera.height == pytest.approx(CAMERA.width / CAMERA.height, rel=0.01)
+    assert whole.camera.fx / CAMERA.fx == pytest.approx(whole.camera.width / CAMERA.width, rel=0.01)
+    assert whole.camera.width * whole.camera.height == pytest.approx(20_000, rel=0.02)
+    if others:
+        assert [crop.camera for crop in crops] == [
+            crop.camera for crop in place_crops(others, BOX.corners(), 0.05, 20_000)
+        ]
 
 
 def test_whole_frames_keep_their_aspect():

@@ -42,6 +42,15 @@ class TableScene:
         nearest = np.where(hit > 0, np.fmin(hit, nearest), nearest)
         return np.where(np.isfinite(nearest), nearest, np.nan)
 
+    def image(self, view: View) -> np.ndarray:
+        """Colour what a view sees, (H, W, 3) uint8: a red sphere on a table of grey stripes."""
+        points = backproject_map(view, self.depth(view))
+        on_sphere = np.linalg.norm(points - self.centre, axis=-1) < self.radius + 1e-6
+        table = 130 + 40 * np.sin(20 * points[..., 0]) * np.sin(16 * points[..., 1])
+        shade = 150 + 200 * (points[..., 2] - self.radius)
+        colour = np.where(on_sphere, [shade, 0.2 * shade, 0.2 * shade], [table, table, table])
+        return np.moveaxis(np.nan_to_num(colour), 0, -1).clip(0, 255).astype(np.uint8)
+
 
 def orbit(count: int, height: float = 0.9, distance: float = 1.2, phase: float = 0.1) -> list[View]:
     """Place views on a circle around the object, looking at a point above the table."""

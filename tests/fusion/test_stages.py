@@ -8,7 +8,8 @@ from threedfs.errors import UserError
 from threedfs.geometry.projection import backproject_map
 from threedfs.geometry.similarity import Similarity
 from threedfs.io.consistency import read_consistency
-from threedfs.io.depth_maps import DepthMap, Semidense, write_depth_map, write_semidense
+from threedfs.io.crops import Crop, write_crops
+from threedfs.io.depth_maps import DepthMap, Semidense, write_depth_map, write_edges, write_semidense
 from threedfs.io.frames import Frame, write_frames
 from threedfs.io.images import read_mask
 from threedfs.io.keyframes import write_keyframes
@@ -21,6 +22,8 @@ from threedfs.params.fuse_object import FuseObjectParams
 from threedfs.params.fuse_scene import FuseSceneParams
 from threedfs.params.locate import LocateParams
 from threedfs.params.locate_object import LocateObjectParams
+from threedfs.params.schema import default_settings
+from threedfs.params.segment import SegmentParams
 from threedfs.progress import Progress
 from threedfs.stages import consistency, fuse_object, fuse_scene, locate, locate_object
 from threedfs.stages import object as object_stage
@@ -40,6 +43,7 @@ def lay_out(folder, scene):
         inverse = np.where(rng.random(depth.shape) < 0.1, 1 / depth, np.nan).astype(np.float32)
         semidense = Semidense(inverse, (0.01 * inverse) ** 2)
         write_semidense(folder / "semidense" / f"{view.name}.zarr.zip", semidense, HEADER)
+        write_edges(folder / "edges" / f"{view.name}.zarr.zip", 0 * ones, HEADER)
         clouds.append(backproject_map(view, 1 / inverse.astype(np.float64))[np.isfinite(inverse)])
     xyz = np.concatenate(clouds)
     xyz = xyz[np.linalg.norm(xyz, axis=1) < 2]
@@ -50,6 +54,8 @@ def lay_out(folder, scene):
     write_keyframes(folder / "keyframes.json", keyframes, HEADER)
     poses = Poses(tuple(scene.views), (), (0.0, 0.0), Similarity(1.0, np.eye(3), np.zeros(3)))
     write_poses(folder / "poses.json", poses, HEADER)
+    crops = [Crop(view.name, scene.image(view), np.isfinite(scene.depth(view))) for view in scene.views]
+    write_crops(folder / "crops.zarr.zip", crops, HEADER, ordered=True, source_shape=(240, 320))
     blank = np.zeros((*scene.views[0].camera.shape, 3), np.uint8)
     frames = [Frame(view.name, 0, 0.0, 1.0, blank) for view in scene.views]
     write_frames(folder / "frames.zarr.zip", frames, HEADER, ordered=True, source_shape=(240, 320))
@@ -57,7 +63,7 @@ def lay_out(folder, scene):
 
 def run_all(folder, threads=1, point_deviation=0.05):
     job = Job(Progress("test"), HEADER, threads)
-    depth, semidense = (sorted((folder / name).iterdir()) for name in ("depth", "semidense"))
+    depth, semidense, edges = (sorted((folder / name).iterdir()) for name in ("depth", "semidense", "edges"))
     at = {"keyframes": folder / "keyframes.json"}
     agreement = folder / "consistency.zarr.zip"
     consistency.run(**at, depth=depth, consistency=agreement, params=ConsistencyParams(), job=job)
@@ -74,8 +80,13 @@ def run_all(folder, threads=1, point_deviation=0.05):
         **at,
         scene=folder / "scene.zarr.zip",
         points=folder / "points.zarr.zip",
+        crops=folder / "crops.zarr.zip",
         semidense=semidense,
+        edges=edges,
+        depth=depth,
+        consistency=agreement,
         support=folder / "support.json",
+        segmentation=default_settings(SegmentParams),
         clearance=LocateObjectParams().clearance,
         params=LocateParams(plane_candidates=500, point_deviation=point_deviation),
         job=job,
@@ -176,7 +187,7 @@ def test_bytes_do_not_depend_on_threads(results, table, tmp_path):
     lay_out(tmp_path, table)
     run_all(tmp_path, threads=2)
     made = [path.relative_to(tmp_path) for path in sorted(tmp_path.rglob("*")) if path.is_file()]
-    assert len(made) == 2 * len(table.views) + 4 + 7 + 1 + len(table.views)
+    assert len(made) == 3 * len(table.views) + 5 + 7 + 1 + len(table.views)
     for path in made:
         assert (tmp_path / path).read_bytes() == (results / path).read_bytes(), path
 

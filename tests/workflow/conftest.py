@@ -33,7 +33,11 @@ SIGNATURES = {
     "depth": ("crops keyframes semidense edges stereo", "depth", "keyframe"),
     "consistency": ("keyframes depth", "consistency", ""),
     "fuse_scene": ("keyframes points depth consistency", "scene", ""),
-    "locate": ("scene keyframes points semidense", "support", "clearance"),
+    "locate": (
+        "scene keyframes points crops semidense edges depth consistency",
+        "support",
+        "clearance segmentation",
+    ),
     "locate_object": ("volume support keyframes semidense", "located", "field"),
     "fuse_object": ("keyframes depth consistency support", "volume", ""),
     "fuse_baseline": ("keyframes depth support", "volume", "fusion"),

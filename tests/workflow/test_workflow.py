@@ -83,13 +83,12 @@ def test_changed_parameter_reruns_what_follows_and_flipped_back_nothing(finished
 def test_changed_crops_rerun_what_follows_and_nothing_before(finished):
     """Contract: neither frames, poses and keyframes nor the scene pass are done again; a dry run tells."""
     (finished.folder / "other.yaml").write_text("crops: {pixels: 50000}\n")
-    listed = finished.run("--configfile", "other.yaml", "-n")
-    planned = Counter(re.findall(r"^(?:rule|checkpoint|localrule) (\w+):", listed, re.MULTILINE)) - Counter(["all"])
-    once = ("crops", "cues", "depth", "consistency", "fuse_object", "locate_object", "object")
-    assert planned == Counter([*once, "evaluate_reconstruction", "evaluate", "collect"])
-    assert "03_scene/06_depth" not in re.sub(r"^ +input:.*", "", listed, flags=re.MULTILINE)
+    planned = dict(re.findall(r"^(\w+) +(\d+)$", finished.run("--configfile", "other.yaml", "-n"), re.MULTILINE))
+    followers = ("crops", "cues", "depth", "consistency", "fuse_object", "locate_object", "object")
+    once = {*followers, "evaluate_reconstruction", "evaluate", "collect", "all"}
+    assert planned == {**dict.fromkeys(once, "1"), "total": str(len(once))}
     output = finished.run("--configfile", "other.yaml")
-    assert jobs_taken(output) == Counter() and jobs_done(output)["depth"] == 2
+    assert set(jobs_taken(output)) <= {"collect"} and jobs_done(output)["depth"] == 2
 
 
 def test_changed_parameter_of_one_stage_of_a_rule_leaves_the_others(finished):

@@ -45,7 +45,7 @@ def place_crops(views: Sequence[View], corners: np.ndarray, margin: float, pixel
 
     All crops have pixels of one size at the object, so that what is counted in pixels means the same in each: as fine
     as the mean of their areas allows, but never finer than the source. A frame that shows nothing of the box, or has
-    it partly behind its camera, is taken whole.
+    it partly behind its camera, is taken whole, with an area of `pixels` at most.
 
     Parameters
     ----------
@@ -59,14 +59,16 @@ def place_crops(views: Sequence[View], corners: np.ndarray, margin: float, pixel
         Mean area of the crops.
     """
     windows = [find_window(view, corners, margin) for view in views]
-    size = choose_pixel_size(windows, pixels)
+    shown = [window for window in windows if window]
+    size = choose_pixel_size(shown, pixels) if shown else 0.0
     return [
-        cut_view(view, window, min(1.0, window.pixel_size / size)) for view, window in zip(views, windows, strict=True)
+        cut_view(view, window, min(1.0, window.pixel_size / size)) if window else take_whole(view, pixels)
+        for view, window in zip(views, windows, strict=True)
     ]
 
 
-def find_window(view: View, corners: np.ndarray, margin: float) -> Window:
-    """Return the part of a source frame around a box (8, 3)."""
+def find_window(view: View, corners: np.ndarray, margin: float) -> Window | None:
+    """Return the part of a source frame around a box (8, 3); none where it is not in view, or partly behind."""
     camera = view.camera
     places, depth = project(view, corners)
     distance = float(view.cam_from_world[2] @ np.append(corners.mean(axis=0), 1))
@@ -77,7 +79,14 @@ def find_window(view: View, corners: np.ndarray, margin: float) -> Window:
         right, bottom = np.ceil(np.minimum(high + reach, (camera.width - 0.5, camera.height - 0.5)) + 0.5).astype(int)
         if min(right - left, bottom - top) >= _LEAST_SIDE:
             return Window(int(left), int(top), int(right), int(bottom), distance / camera.fx)
-    return Window(0, 0, camera.width, camera.height, max(distance, 0.0) / camera.fx)
+    return None
+
+
+def take_whole(view: View, pixels: int) -> View:
+    """Return the view of the whole frame with an area of `pixels` at most."""
+    camera = view.camera
+    scale = min(1.0, (pixels / (camera.width * camera.height)) ** 0.5)
+    return cut_view(view, Window(0, 0, camera.width, camera.height, 0.0), scale)
 
 
 def choose_pixel_size(windows: Sequence[Window], pixels: int) -> float:

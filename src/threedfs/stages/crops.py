@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from threedfs.crops.depth_range import expect_crop_range
-from threedfs.crops.place import place_crops, shrink_view
+from threedfs.crops.place import find_window, place_crops, shrink_view
 from threedfs.crops.resample import resample
 from threedfs.frames.decode import scan_source
 from threedfs.frames.scale import scale_camera
@@ -49,11 +49,10 @@ def run(
         for view in posed.views
         if view.name in wanted
     ]
-    whole = support is None or params.whole
-    if whole:
+    corners = None if support is None or params.whole else read_support(support).box.corners()
+    if corners is None:
         placed = [shrink_view(view, params.longest_side) for view in filmed]
     else:
-        corners = read_support(support).box.corners()
         placed = place_crops(filmed, corners, params.margin, params.pixels)
     of_frame = {view.name: (view, crop) for view, crop in zip(filmed, placed, strict=True)}
 
@@ -69,7 +68,7 @@ def run(
     for entry in entries.values():
         view = of_frame[entry.view.name][1]
         near, far = entry.near, entry.far
-        if not whole:
+        if corners is not None and find_window(of_frame[entry.view.name][0], corners, params.margin):
             near, far = expect_crop_range(view, xyz, corners, (near, far), params.near_factor, params.far_factor)
         neighbours = tuple(of_frame[neighbour.name][1] for neighbour in entry.neighbours)
         moved.append(replace(entry, view=view, neighbours=neighbours, near=near, far=far))
