@@ -18,17 +18,17 @@ from threedfs.poses.scene import Scene, make_scene, observation_errors
 COUNT = 9
 MAPPED = [0, 2, 4, 6, 8]
 RULE = RefinementRule(
-    most=2000,
-    radius=6,
-    span=4,
-    max_angle=np.radians(30),
-    max_shift=4.0,
-    min_correlation=0.85,
-    min_observations=30,
+    patch_points=2000,
+    patch_radius=6,
+    patch_span=4,
+    patch_angle=np.radians(30),
+    patch_shift=4.0,
+    patch_correlation=0.85,
+    patch_observations=30,
     loss_width=1.0,
     max_bend=np.radians(8),
 )
-RESECTION = ResectionRule(most=300, max_error=4.0, min_inliers=15, min_inlier_share=0.25)
+RESECTION = ResectionRule(followed_points=300, max_error=4.0, min_inliers=15, followed_share=0.25)
 
 
 @pytest.fixture(scope="module")
@@ -140,6 +140,12 @@ def relative_turns(poses, truth):
 
 def test_a_scene_that_would_bend_is_left_as_it_was(scene, images, truth):
     strict = replace(RULE, max_bend=0.0)
+    whole = with_poses(scene, dict(enumerate(truth)))
+    assert refine_scene(whole, images, strict, refine_poses=True, refine_lens=False, threads=1) is whole
+
+
+def test_a_scene_is_left_as_it_was_where_patches_see_less_than_keypoints(scene, images, truth):
+    strict = replace(RULE, patch_correlation=0.9999)
     whole = with_poses(scene, dict(enumerate(truth)))
     assert refine_scene(whole, images, strict, refine_poses=True, refine_lens=False, threads=1) is whole
 

@@ -17,7 +17,8 @@ class FeaturesParams:
     max_gap: float = parameter(
         0.5, "longest time between two of them; where frames are rarer, in each", unit="s", minimum=0
     )
-    max_features: int = parameter(1200, "most SIFT keypoints of a frame, the largest kept", minimum=100)
+    max_features: int = parameter(1200, "most SIFT keypoints of a frame of a video, the largest kept", minimum=100)
+    max_photo_features: int = parameter(2048, "the same of a photo, which fewer others overlap", minimum=100)
     min_contrast: float = parameter(
         0.00667,
         "least contrast of a keypoint; smaller finds more on faint texture",

@@ -27,19 +27,19 @@ class RefinementRule:
 
     Attributes
     ----------
-    most : int
+    patch_points : int
         Points followed, those that most frames see.
-    radius : int
+    patch_radius : int
         Of a patch, pixels.
-    span : int
+    patch_span : int
         A point is looked for in frames at most so far, in time, from one that sees it.
-    max_angle : float
+    patch_angle : float
         Largest angle between the rays to the patch's own frame and another, radians.
-    max_shift : float
+    patch_shift : float
         Farthest from where the point is expected, pixels.
-    min_correlation : float
+    patch_correlation : float
         Of a patch with what it is found at.
-    min_observations : int
+    patch_observations : int
         A frame with fewer keeps the observations that it had.
     loss_width : float
         See `adjust_bundle`, pixels.
@@ -47,13 +47,13 @@ class RefinementRule:
         Most that a frame may be turned against the middle of the path, radians; else nothing is changed.
     """
 
-    most: int
-    radius: int
-    span: int
-    max_angle: float
-    max_shift: float
-    min_correlation: float
-    min_observations: int
+    patch_points: int
+    patch_radius: int
+    patch_span: int
+    patch_angle: float
+    patch_shift: float
+    patch_correlation: float
+    patch_observations: int
     loss_width: float
     max_bend: float
 
@@ -62,6 +62,8 @@ def refine_scene(
     scene: Scene, images: np.ndarray, rule: RefinementRule, *, refine_poses: bool, refine_lens: bool, threads: int
 ) -> Scene:
     """Observe the points anew as patches and adjust poses, points and, if it is not known, the lens.
+
+    Where frames are so far apart that patches give fewer observations than keypoints, nothing is changed.
 
     Parameters
     ----------
@@ -80,7 +82,7 @@ def refine_scene(
         observed = replace(
             observed, cam_from_world={frame: pose for frame, pose in scene.cam_from_world.items() if frame in seeing}
         )
-    if len(observed.points.xyz) == 0:
+    if len(observed.pixels) < len(scene.pixels):
         return scene
     posed = observed.cam_from_world
     for _ in range(_ROUNDS):
@@ -109,17 +111,19 @@ def observe_patches(scene: Scene, images: np.ndarray, rule: RefinementRule, thre
         See `refine_scene`.
     """
     points = scene.points
-    own = _own_observations(scene, rule.most)
-    number, frame = _expected_frames(scene, own, rule.span, len(images))
-    expected, shape, alike = _predict(scene, own[number], frame, images.shape[1:], rule.max_angle)
+    own = _own_observations(scene, rule.patch_points)
+    number, frame = _expected_frames(scene, own, rule.patch_span, len(images))
+    expected, shape, alike = _predict(scene, own[number], frame, images.shape[1:], rule.patch_angle)
     own_of = own[number][alike]
     patches = Patches(points.track_frame[own_of], frame[alike], scene.pixels[own_of], expected[alike], shape[alike])
-    pixels, correlation = follow_patches(images, patches, radius=rule.radius, max_shift=rule.max_shift, threads=threads)
-    found = correlation >= rule.min_correlation
+    pixels, correlation = follow_patches(
+        images, patches, radius=rule.patch_radius, max_shift=rule.patch_shift, threads=threads
+    )
+    found = correlation >= rule.patch_correlation
     track_point = np.concatenate([points.track_point[own], points.track_point[own_of[found]]])
     track_frame = np.concatenate([points.track_frame[own], patches.target[found]])
     pixels = np.concatenate([scene.pixels[own], pixels[found]])
-    few = np.bincount(track_frame, minlength=len(images)) < rule.min_observations
+    few = np.bincount(track_frame, minlength=len(images)) < rule.patch_observations
     before = np.flatnonzero(few[points.track_frame])
     new = ~few[track_frame]
     return make_scene(

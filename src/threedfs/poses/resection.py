@@ -22,18 +22,18 @@ class ResectionRule:
 
     Attributes
     ----------
-    most : int
+    followed_points : int
         Points followed from each of the neighbours, those that most frames see.
     max_error : float
         Largest reprojection error of a point that supports a pose, pixels.
-    min_inliers, min_inlier_share : int, float
+    min_inliers, followed_share : int, float
         Least number of such points, and least share of the followed ones.
     """
 
-    most: int
+    followed_points: int
     max_error: float
     min_inliers: int
-    min_inlier_share: float
+    followed_share: float
 
 
 def resect_frames(
@@ -66,7 +66,7 @@ def resect_frames(
     def follow(frame: int) -> tuple[np.ndarray, np.ndarray]:
         place = np.searchsorted(mapped, frame)
         near = [other for other in mapped[max(place - 1, 0) : place + 1] if other in scene.cam_from_world]
-        found = [_follow_points(scene, length, images, other, frame, rule.most) for other in near]
+        found = [_follow_points(scene, length, images, other, frame, rule.followed_points) for other in near]
         empty = (np.zeros((0, 2)), np.zeros((0, 3)))
         pixels, xyz = (np.concatenate(parts) for parts in zip(empty, *found, strict=True))
         return pixels, xyz
@@ -78,7 +78,7 @@ def resect_frames(
         if len(xyz) < rule.min_inliers:
             continue
         solved = estimate_pose(pixels, xyz, lens, max_error=rule.max_error, seed=seed)
-        if solved is not None and solved[1].sum() >= max(rule.min_inliers, rule.min_inlier_share * len(xyz)):
+        if solved is not None and solved[1].sum() >= max(rule.min_inliers, rule.followed_share * len(xyz)):
             poses[frame] = solved[0]
     return poses
 

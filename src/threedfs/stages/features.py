@@ -28,7 +28,7 @@ def run(*, frames: Path, features: Path, params: FeaturesParams, job: Job) -> No
     found = find_keypoints(
         lambda number: store.image(store.names[number]),
         chosen,
-        max_features=params.max_features,
+        max_features=params.max_features if store.ordered else params.max_photo_features,
         min_contrast=params.min_contrast,
         threads=job.threads,
     )

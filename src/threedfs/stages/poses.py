@@ -19,6 +19,7 @@ from threedfs.io.points import write_points
 from threedfs.io.poses import Poses, write_poses
 from threedfs.job import Job
 from threedfs.params.poses import PosesParams
+from threedfs.params.rules import make_rule
 from threedfs.poses.closures import ClosureRule
 from threedfs.poses.continuity import measure_path
 from threedfs.poses.gates import (
@@ -158,9 +159,7 @@ def _estimate(film: Film, matcher: PairMatcher, calibration: Path | None, params
 
 
 def _resect(film: Film, scene: Scene, params: PosesParams, job: Job) -> Scene:
-    rule = ResectionRule(
-        params.followed_points, params.max_match_error, params.second_try_inliers, params.followed_share
-    )
+    rule = make_rule(ResectionRule, params, max_error=params.max_match_error, min_inliers=params.second_try_inliers)
     added = resect_frames(scene, film.images, film.described, rule, seed=job.seed, threads=job.threads)
     left_out = len(film.images) - len(film.described)
     job.progress.note(f"{len(added)} of {left_out} frames in between posed")
@@ -170,20 +169,18 @@ def _resect(film: Film, scene: Scene, params: PosesParams, job: Job) -> Scene:
 
 
 def _refine(film: Film, scene: Scene, params: PosesParams, job: Job, *, refine_poses: bool, refine_lens: bool) -> Scene:
-    rule = RefinementRule(
-        most=params.patch_points,
-        radius=params.patch_radius,
-        span=params.patch_span if film.store.ordered else 0,
-        max_angle=np.radians(params.patch_angle),
-        max_shift=params.patch_shift,
-        min_correlation=params.patch_correlation,
-        min_observations=params.patch_observations,
-        loss_width=params.loss_width,
+    """Follow patches through a video; photos look from too far apart for that. Drop points that are seen badly."""
+    rule = make_rule(
+        RefinementRule,
+        params,
+        patch_angle=np.radians(params.patch_angle),
         max_bend=np.radians(params.closure_rotation),
     )
-    refined = refine_scene(
-        scene, film.images, rule, refine_poses=refine_poses, refine_lens=refine_lens, threads=job.threads
-    )
+    refined = scene
+    if film.store.ordered:
+        refined = refine_scene(
+            scene, film.images, rule, refine_poses=refine_poses, refine_lens=refine_lens, threads=job.threads
+        )
     points = keep_well_seen(
         refined.points,
         refined.cam_from_world,
