@@ -37,4 +37,5 @@ def mask_field(
         (box,) = ndimage.find_objects(owned.astype(np.uint8))
         near = tuple(slice(max(part.start - median_size, 0), part.stop + median_size) for part in box)
         alone[near] = ndimage.median_filter(alone[near], median_size, mode="nearest")
-    return np.maximum(alone, np.clip(-height / spacing, -1, 1)).astype(np.float32)
+    standing = np.where(height <= 0, sdf, alone)  # what the object stands on does not lift its foot off the plane
+    return np.maximum(standing, np.clip(-height / spacing, -1, 1)).astype(np.float32)
