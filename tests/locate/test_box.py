@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from threedfs.geometry.grid import voxel_centres
-from threedfs.locate.box import enclose_object
-from threedfs.types import Plane, VoxelGrid
+from threedfs.locate.box import enclose_object, widen_support
+from threedfs.types import Plane, Support, VoxelGrid
 
 GRID = VoxelGrid(np.full(3, -1.0), 0.04, (50, 50, 50))
 NORMAL = np.array([0.48, -0.36, 0.8])
@@ -67,3 +67,26 @@ def test_one_voxel_has_a_box():
     box = enclose_object(voxels, GRID, Plane(np.array([0.0, 0, 1]), -GRID.axis(2)[22]), margin=0.0)
     np.testing.assert_allclose(box.high - box.low, GRID.spacing)
     np.testing.assert_allclose(np.abs(box.axes).max(axis=1), 1)
+
+
+def test_a_box_is_enlarged_once_what_images_show_takes_up_most_of_its_margin():
+    """Exact: kept for what stays inside, drawn anew around both for what does not, never lowered for what is below."""
+    known, axes = slab(0.4, (0.6, 0.4, 0.3))
+    support = Support(PLANE, enclose_object(known, GRID, PLANE, margin=0.35), {"plane_share": 0.5})
+    along = voxel_centres(GRID) @ axes.T
+    top = along[known][:, 2].max()
+    own = 0.35 / (2 * 1.35) * support.box.longest
+
+    def widen(share):
+        column = (np.abs(along - along[known].mean(axis=0)) < 0.1)[..., :2].all(axis=-1)
+        return widen_support(support, known, known | (column & (along[..., 2] < top + share * own)), GRID, 0.35)
+
+    inside, beyond = widen(0.3), widen(1.6)
+    assert inside.box is support.box
+    assert inside.figures["box_enlarged"] == 1
+    assert inside.figures["plane_share"] == 0.5
+    assert beyond.figures["margin_used"] > 1 > inside.figures["margin_used"]
+    assert beyond.figures["box_enlarged"] > 1
+    assert beyond.box.high[2] > support.box.high[2] + own / 2
+    nothing = widen_support(support, known, np.zeros_like(known), GRID, 0.35)
+    assert nothing.box is support.box
