@@ -230,7 +230,7 @@ def test_the_same_bytes_twice(scene):
 
 
 @pytest.mark.parametrize(
-    "change", [{"pixels": 12_000}, {"margin": 0.3}, {"near_factor": 0.5}, {"far_factor": 2.0}, {"whole": True}]
+    "change", [{"pixels": 12_000}, {"margin": 0.1}, {"near_factor": 0.5}, {"far_factor": 2.0}, {"whole": True}]
 )
 def test_every_parameter_changes_what_is_written(scene, change):
     folder, *_ = scene

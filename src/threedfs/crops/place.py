@@ -74,11 +74,13 @@ def find_window(view: View, corners: np.ndarray, margin: float) -> Window | None
     distance = float(view.cam_from_world[2] @ np.append(corners.mean(axis=0), 1))
     if depth.min() > 0:
         low, high = places.min(axis=0), places.max(axis=0)
+        last = np.array([camera.width, camera.height]) - 0.5
+        if (np.minimum(high, last) - np.maximum(low, -0.5)).min() < _LEAST_SIDE:
+            return None
         reach = margin * (high - low).max()
         left, top = np.floor(np.maximum(low - reach, -0.5) + 0.5).astype(int)
-        right, bottom = np.ceil(np.minimum(high + reach, (camera.width - 0.5, camera.height - 0.5)) + 0.5).astype(int)
-        if min(right - left, bottom - top) >= _LEAST_SIDE:
-            return Window(int(left), int(top), int(right), int(bottom), distance / camera.fx)
+        right, bottom = np.ceil(np.minimum(high + reach, last) + 0.5).astype(int)
+        return Window(int(left), int(top), int(right), int(bottom), distance / camera.fx)
     return None
 
 
