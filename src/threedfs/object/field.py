@@ -7,7 +7,7 @@ from scipy import ndimage
 
 
 def mask_field(
-    sdf: np.ndarray, owned: np.ndarray, height: np.ndarray, spacing: float, median_size: int = 1
+    sdf: np.ndarray, owned: np.ndarray, height: np.ndarray, spacing: float, median: bool = False
 ) -> np.ndarray:
     """Return the field of the object alone, (nx, ny, nz) float32, negative inside it and nowhere else (Sec. 3.5).
 
@@ -28,14 +28,15 @@ def mask_field(
         Above the plane, scene units.
     spacing : float
         Edge of a voxel, scene units.
-    median_size : int
-        Side in voxels, odd, of the cube whose median a value becomes before the plane cuts: pits, spikes and handles a
-        voxel wide go, edges stay.
+    median : bool
+        Whether a value becomes the median of its own and its 6 neighbours' before the plane cuts: pits, spikes and
+        handles a voxel wide go, edges and corners stay.
     """
     alone = np.where((sdf < 0) & ~owned, np.float32(1), sdf).astype(np.float32)
-    if median_size > 1 and owned.any():
+    if median and owned.any():
         (box,) = ndimage.find_objects(owned.astype(np.uint8))
-        near = tuple(slice(max(part.start - median_size, 0), part.stop + median_size) for part in box)
-        alone[near] = ndimage.median_filter(alone[near], median_size, mode="nearest")
+        near = tuple(slice(max(part.start - 2, 0), part.stop + 2) for part in box)
+        beside = ndimage.generate_binary_structure(3, 1)
+        alone[near] = ndimage.median_filter(alone[near], footprint=beside, mode="nearest")
     standing = np.where(height <= 0, sdf, alone)  # what the object stands on does not lift its foot off the plane
     return np.maximum(standing, np.clip(-height / spacing, -1, 1)).astype(np.float32)

@@ -16,10 +16,10 @@ class CropsParams:
         960, "longer side of a frame that is taken whole; smaller sources keep their size", unit="pixel", minimum=64
     )
     pixels: int = parameter(
-        200_000, "mean area of the crops; a small object in a small source has fewer", unit="pixel", minimum=10_000
+        250_000, "mean area of the crops; a small object in a small source has fewer", unit="pixel", minimum=10_000
     )
     margin: float = parameter(
-        0.3,
+        0.4,
         "what a crop exceeds the projection of the object's box by on each side",
         unit="longer side of the projection",
         minimum=0.0,

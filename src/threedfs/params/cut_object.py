@@ -36,11 +36,8 @@ class CutObjectParams:
     gap_views: int = parameter(
         2, "views that show a voxel of the visual hull on a gap before it is filled; acts with fit_masks", minimum=1
     )
-    median_size: int = parameter(
-        3,
-        "side of the cube of voxels whose median the field becomes; 1 for none (paper)",
-        unit="voxel",
-        choices=(1, 3, 5),
+    median: bool = parameter(
+        True, "the field becomes its median over a voxel and the 6 beside it: pits and spikes of a voxel go (paper: no)"
     )
     smoothing_steps: int = parameter(3, "steps of the mesh's smoothing", equation="Sec. 3.5", minimum=0, maximum=100)
     smoothing_contrast: float = parameter(

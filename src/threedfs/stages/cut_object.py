@@ -96,5 +96,5 @@ def _cut_field(
         )
         owned |= filled
         job.progress.note(f"{filled.sum()} voxels filled for gaps in the masks, {(solid & (sdf > 0)).sum()} carved")
-    alone = mask_field(sdf, owned, height, grid.spacing, params.median_size)
+    alone = mask_field(sdf, owned, height, grid.spacing, params.median)
     return smooth_mesh(extract_surface(alone, grid), params.smoothing_steps, params.smoothing_contrast)
