@@ -26,8 +26,11 @@ class Scene:
 
     @property
     def neighbours(self):
-        everywhere = np.ones((HEIGHT, WIDTH), bool)
-        return [(view, self.images[view.name], everywhere) for view in self.keyframe.neighbours]
+        images = [self.images[view.name] for view in self.keyframe.neighbours]
+        return [
+            (v, image, np.ones(image.shape[:2], bool))
+            for v, image in zip(self.keyframe.neighbours, images, strict=True)
+        ]
 
 
 def _rays(view):

@@ -94,7 +94,7 @@ def test_a_neighbour_of_another_shape_finds_the_same(make_scene):
     But where the true place was taken off, and another one passes for it.
     """
     scene = make_scene()
-    view, image = scene.neighbours[0]
+    view, image, _ = scene.neighbours[0]
     camera = view.camera
     less = replace(camera, width=camera.width - 30, height=camera.height - 20, cx=camera.cx - 30, cy=camera.cy - 20)
     neighbours = (replace(view, camera=less), *scene.keyframe.neighbours[1:])

@@ -57,7 +57,9 @@ def spawn(tmp_path: Path):
     """Start a Python process that sees `toolbox`."""
 
     def start(program: str) -> subprocess.Popen:
-        program = f"import sys; sys.path.insert(0, {str(tmp_path / 'src')!r})\n{program}"
+        # where the tests themselves run in the background, an interrupt would be ignored
+        start = "import signal, sys; signal.signal(signal.SIGINT, signal.default_int_handler)"
+        program = f"{start}; sys.path.insert(0, {str(tmp_path / 'src')!r})\n{program}"
         return subprocess.Popen(
             [sys.executable, "-c", program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
         )
