@@ -265,12 +265,18 @@ def _compare(
                 if u > -0.5 and v > -0.5 and u < columns - 0.5 and v < rows - 0.5:
                     own_row, own_column = int(v + 0.5) + 1, int(u + 0.5) + 1
                     rendered[own_row, own_column] = min(rendered[own_row, own_column], z)
+        # Nearest in 3x3, because points drawn one by one leave gaps; of each row first.
+        for row in range(rows + 2):
+            left, middle = rendered[row, 0], rendered[row, 1]
+            for column in range(columns):
+                right = rendered[row, column + 2]
+                rendered[row, column] = min(left, middle, right)
+                left, middle = middle, right
         for row in range(rows):
             for column in range(columns):
                 if not depth[slot, row, column] > 0:
                     continue
-                # Nearest in 3x3, because points drawn one by one leave gaps.
-                crossing = rendered[row : row + 3, column : column + 3].min()
+                crossing = min(rendered[row, column], rendered[row + 1, column], rendered[row + 2, column])
                 if crossing < (1 - tolerance) * near_depth[slot, row, column]:
                     counts[2, slot, row, column] += 1
                     free[slot, row, column] = min(free[slot, row, column], (1 - tolerance) * crossing)

@@ -11,6 +11,7 @@ from sklearn.exceptions import ConvergenceWarning
 from sklearn.mixture import GaussianMixture
 
 from threedfs.errors import UserError
+from threedfs.segment.mixture import log_density
 
 _LEAST_VARIANCE = 1.0
 """Of a component along any direction, Lab units squared: noise of a camera, so that a flat colour is no spike."""
@@ -66,13 +67,14 @@ class ColorModel:
             Where it is known how the support surface looks at a pixel, the background is expected to look so, and its
             mixture keeps the share `_UNEXPECTED`. What looks like the object beneath it is not believed.
         """
-        of_object, background = self.of_object.score_samples(lab), self.of_background.score_samples(lab)
+        of_object, background = log_density(self.of_object, lab), log_density(self.of_background, lab)
         if table is not None and table.known.any():
             known = table.known
-            lean = self.of_object.score_samples(table.color[known]) - self.of_background.score_samples(
-                table.color[known]
-            )
-            doubt = np.where(table.beneath[known], np.exp(np.clip(lean - _LIKENESS, -50, 50)), 0)
+            doubt = np.zeros(known.sum())
+            beneath = table.beneath[known]
+            foot = table.color[known][beneath]
+            lean = log_density(self.of_object, foot) - log_density(self.of_background, foot)
+            doubt[beneath] = np.exp(np.clip(lean - _LIKENESS, -50, 50))
             trust = (1 - _UNEXPECTED) / (1 + doubt)
             expected = np.log(np.maximum(trust, 1e-300)) + table.density[known]
             background[known] = np.logaddexp(np.log(1 - trust) + background[known], expected)
