@@ -162,7 +162,7 @@ def test_small_frames_are_undistorted_views(scene):
 
 def test_crops_show_the_box_and_what_is_filmed_there(scene):
     folder, _, _, before = scene
-    store, entries = cut(folder, pixels=10_000)
+    store, entries = cut(folder, pixels=10_000, near_factor=0.95)
     views = check_store(store, entries, before)
     assert read_needs_stereo(folder / "views.json")
     for name in ("a", "b", "c"):
@@ -180,7 +180,7 @@ def test_crops_show_the_box_and_what_is_filmed_there(scene):
 
 def test_a_frame_that_does_not_show_the_box_is_whole_and_keeps_its_depth_range(scene):
     folder, _, filmed, before = scene
-    store, entries = cut(folder, pixels=10_000)
+    store, entries = cut(folder, pixels=10_000, near_factor=0.95)
     away = entries["away"]
     assert find_window(VIEWS[3], BOX.corners(), 0.05) is None
     assert away.view.camera.shape == pytest.approx((87, 116), abs=1)
