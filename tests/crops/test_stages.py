@@ -12,7 +12,7 @@ from threedfs.geometry.rigid import look_at
 from threedfs.geometry.similarity import Similarity
 from threedfs.io.crops import read_crops
 from threedfs.io.frames import Frame, write_frames
-from threedfs.io.keyframes import read_keyframes, read_needs_stereo, write_keyframes
+from threedfs.io.keyframes import read_keyframes, read_needs_stereo, read_object_pixels, write_keyframes
 from threedfs.io.points import write_points
 from threedfs.io.poses import Poses, write_poses
 from threedfs.io.volumes import write_support
@@ -172,6 +172,9 @@ def test_crops_show_the_box_and_what_is_filmed_there(scene):
         assert view.camera.width < 200 and 3_000 < view.camera.width * view.camera.height < 25_000
         assert store.valid_of(name).all()
         assert overlap(is_red(store.image(name)), disc_in(view)) > 0.95
+    middles = {name: project(view, BOX.centre[None])[1][0] for name, view in views.items()}
+    lengths = [views[name].camera.fx * BOX.longest / depth for name, depth in middles.items() if depth > 0]
+    assert read_object_pixels(folder / "views.json", "a") == pytest.approx(np.median(lengths))
     for name in ("a", "c"):
         depths = project(views[name], BOX.corners())[1]
         assert entries[name].near == pytest.approx(0.95 * depths.min())

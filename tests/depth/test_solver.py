@@ -83,11 +83,21 @@ def test_second_order_priors_beat_the_first_on_a_slanted_blank_part(inputs):
         {"smoothness": 0.01},
         {"smoothness_growth": 1.1},
         {"break_bending": 0.0},
+        {"magnification": 2.0},
     ],
 )
 def test_every_parameter_acts(inputs, change):
     plain = relative_error(inputs)[1].depth
     assert np.abs(relative_error(inputs, **change)[1].depth - plain).max() > 1e-4
+
+
+@pytest.mark.parametrize(("prior", "order"), [("first_order", 1), ("rotation_invariant", 2)])
+def test_magnification_smooths_over_as_many_times_more_pixels(inputs, prior, order):
+    """Over m pixels in place of one a difference of an order is m^order times as large, and is squared by the prior."""
+    smoothness, bending = SETTINGS["smoothness"], SETTINGS["break_bending"]
+    magnified = relative_error(inputs, prior=prior, magnification=2.0)[1].depth
+    changed = {"smoothness": smoothness * 4**order, "break_bending": bending / 2**order}
+    np.testing.assert_allclose(magnified, relative_error(inputs, prior=prior, **changed)[1].depth, rtol=1e-9)
 
 
 def test_measurements_pull_the_blank_part(inputs):

@@ -120,6 +120,15 @@ def cut_view(view: View, window: Window, scale: float) -> View:
     return replace(view, camera=cut)
 
 
+def measure_object(views: Sequence[View], corners: np.ndarray) -> float | None:
+    """Return how long the longest side of a box (8, 3) is in views that it is in front of, pixels, in the median."""
+    middle = np.append(corners.mean(axis=0), 1)
+    longest = max(float(np.linalg.norm(corner - corners[0])) for corner in corners[[1, 2, 4]])
+    depths = [float(view.cam_from_world[2] @ middle) for view in views]
+    lengths = [view.camera.fx * longest / depth for view, depth in zip(views, depths, strict=True) if depth > 0]
+    return float(np.median(lengths)) if lengths else None
+
+
 def shrink_view(view: View, longest_side: int) -> View:
     """Return the view of the whole frame, its longer side at most `longest_side` pixels."""
     shape = working_shape(view.camera.shape, longest_side)

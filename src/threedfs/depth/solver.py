@@ -48,6 +48,7 @@ def optimise_depth(
     early_tolerance: float,
     max_steps: int,
     break_bending: float,
+    magnification: float = 1.0,
     note: Callable[[str], None] = lambda message: None,
 ) -> DepthSolution:
     """Minimise Eq. 2 by alternating Eqs. 5-7 and Eq. 8.
@@ -64,6 +65,8 @@ def optimise_depth(
         Semi-dense depths and lambda_m, weight 0 where there is none.
     edge_weight : (H, W) float64
         Spatial factor of lambda_s.
+    magnification : float
+        How many pixels lie along what is one pixel long where smoothness and break_bending hold.
     Others
         See `DepthParams`.
 
@@ -93,7 +96,7 @@ def optimise_depth(
             depth = double_depth(depth, confidence.shape)
             problem = pose_problem(data.edge_weight, data.confidence, data.measurement_weight, prior)
         # Over twice the distance a bend of the surface is four times as large, a slope twice.
-        growth = (2 if prior == "first_order" else 4) if halved else 1
+        growth = ((2 if halved else 1) / magnification) ** (1 if prior == "first_order" else 2)
         if break_bending > 0 and iteration > iterations // 2:
             kept = release_bends(depth, growth * break_bending, prior)
             problem = replace_prior(problem, data.edge_weight * kept, prior)

@@ -14,11 +14,17 @@ from threedfs.types import Keyframe
 
 
 def write_keyframes(
-    path: Path, keyframes: Sequence[Keyframe], header: Mapping[str, Any], *, needs_stereo: bool = False
+    path: Path,
+    keyframes: Sequence[Keyframe],
+    header: Mapping[str, Any],
+    *,
+    needs_stereo: bool = False,
+    object_pixels: float | None = None,
 ) -> None:
     """Write keyframes.json; entries are found under ``keyframes.<name>``.
 
-    `needs_stereo` is for the rules: whether depth is to be anchored by stereo matches.
+    `needs_stereo` is for the rules: whether depth is to be anchored by stereo matches. `object_pixels` is how long the
+    longest side of the object's box is in the views, pixels; None where it is not known.
     """
     entries = {
         keyframe.view.name: {
@@ -26,6 +32,7 @@ def write_keyframes(
             "neighbours": [encode_view(view) for view in keyframe.neighbours],
             "near": keyframe.near,
             "far": keyframe.far,
+            "object_pixels": object_pixels,
         }
         for keyframe in keyframes
     }
@@ -56,6 +63,11 @@ def read_keyframe(path: Path, name: str) -> Keyframe:
     if name not in entries:
         raise UserError(f"{path}: expected a keyframe named {name}, got {', '.join(sorted(entries))}.")
     return _decode(entries[name])
+
+
+def read_object_pixels(path: Path, name: str) -> float | None:
+    """Return how long the longest side of the object's box is in a keyframe, pixels, if that is known."""
+    return read_document(path, KEYFRAMES)["keyframes"][name].get("object_pixels")
 
 
 def read_needs_stereo(path: Path) -> bool:

@@ -110,6 +110,13 @@ class DepthParams:
     edge_falloff: float = parameter(
         1.0, "how much an image edge weakens smoothing (paper: 5)", symbol="c_edge", equation="Eq. 9", minimum=0
     )
+    object_pixels: float = parameter(
+        380.0,
+        "length of the object in the image at which smoothness and break_bending hold; a longer one is smoothed as "
+        "much as if it were so long, per part of its length (paper: none)",
+        unit="px",
+        exclusive_minimum=0.0,
+    )
     break_bending: float = parameter(
         0.003,
         "relative bend at which smoothing is halved, so that depth discontinuities open; 0 for never (paper)",
@@ -161,7 +168,7 @@ _MATCHING = (
     "confidence_falloff",
     "texture_half_variance",
 )
-_WEIGHTS = ("measurement_weight", "stereo_deviation", "unmatched_trust", "edge_falloff")
+_WEIGHTS = ("object_pixels", "measurement_weight", "stereo_deviation", "unmatched_trust", "edge_falloff")
 
 
 def matching_settings(params: DepthParams) -> dict[str, Any]:

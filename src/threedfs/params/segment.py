@@ -83,7 +83,7 @@ class SegmentParams:
     color_superpixels: int = parameter(
         5000, "superpixels drawn to learn each mixture from", equation="Sec. 3.4.3", minimum=1
     )
-    color_pixels: int = parameter(50000, "pixels drawn from these superpixels", equation="Sec. 3.4.3", minimum=100)
+    color_pixels: int = parameter(20000, "pixels drawn from these superpixels", equation="Sec. 3.4.3", minimum=100)
     color_cap: float = parameter(5.0, "largest cost of a colour", equation="Eq. 20", exclusive_minimum=0.0)
     color_weight: float = parameter(1.0, "weight of the colour", equation="Eq. 21", minimum=0.0)
     table: bool = parameter(

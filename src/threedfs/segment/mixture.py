@@ -28,7 +28,7 @@ def log_density(mixture: GaussianMixture, lab: np.ndarray) -> np.ndarray:
 
 @njit(cache=True)
 def _sum_components(lab, means, factors, offsets):
-    """Return log sum exp over components (K) of offset - |(color - mean) factor|^2 / 2; factors are upper triangular."""
+    """Return log sum exp over components of offset - |(color - mean) factor|^2 / 2; factors are upper triangular."""
     result = np.empty(len(lab))
     terms = np.empty(len(offsets))
     for sample in range(len(lab)):

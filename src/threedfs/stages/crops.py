@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from threedfs.crops.depth_range import expect_crop_range
-from threedfs.crops.place import find_window, place_crops, shrink_view
+from threedfs.crops.place import find_window, measure_object, place_crops, shrink_view
 from threedfs.crops.resample import resample
 from threedfs.frames.decode import scan_source
 from threedfs.frames.scale import scale_camera
@@ -72,7 +72,8 @@ def run(
             near, far = expect_crop_range(view, xyz, corners, (near, far), params.near_factor, params.far_factor)
         neighbours = tuple(of_frame[neighbour.name][1] for neighbour in entry.neighbours)
         moved.append(replace(entry, view=view, neighbours=neighbours, near=near, far=far))
-    write_keyframes(views, moved, job.header, needs_stereo=read_needs_stereo(keyframes))
+    length = None if corners is None else measure_object(placed, corners)
+    write_keyframes(views, moved, job.header, needs_stereo=read_needs_stereo(keyframes), object_pixels=length)
     area = sum(view.camera.width * view.camera.height for view in placed) / len(placed)
     share = sum(c.camera.fx / v.camera.fx for v, c in zip(filmed, placed, strict=True)) / len(placed)
     job.progress.note(f"{len(placed)} crops of {area:.0f} pixels on average, at {share:.2f} of the source's resolution")

@@ -13,7 +13,7 @@ from threedfs.depth.solver import optimise_depth
 from threedfs.depth.weights import edge_weight, measurement_weight
 from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import DepthMap, read_edges, read_semidense, read_stereo, write_depth_map
-from threedfs.io.keyframes import read_keyframe
+from threedfs.io.keyframes import read_keyframe, read_object_pixels
 from threedfs.job import Job
 from threedfs.params.depth import DepthParams, matching_settings, solver_settings
 
@@ -53,6 +53,7 @@ def run(
         matched = read_stereo(stereo).inverse_depth.astype(np.float64)
         inverse_depth, variance = merge_measurements(inverse_depth, variance, matched, params.stereo_deviation)
         confidence = distrust_unmatched(confidence, matched, params.unmatched_trust)
+    length = read_object_pixels(keyframes, keyframe) or 0.0
     solution = optimise_depth(
         evidence.cost_volume,
         evidence.candidates,
@@ -60,6 +61,7 @@ def run(
         1 / inverse_depth,
         measurement_weight(variance, params.measurement_weight),
         edge_weight(read_edges(edges).astype(np.float64), params.edge_falloff),
+        magnification=max(1.0, length / params.object_pixels),
         **solver_settings(params),
         note=job.progress.note,
     )
