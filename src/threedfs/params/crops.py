@@ -16,7 +16,7 @@ class CropsParams:
         960, "longer side of a frame that is taken whole; smaller sources keep their size", unit="pixel", minimum=64
     )
     pixels: int = parameter(
-        250_000, "mean area of the crops; a small object in a small source has fewer", unit="pixel", minimum=10_000
+        400_000, "mean area of the crops; a small object in a small source has fewer", unit="pixel", minimum=10_000
     )
     margin: float = parameter(
         0.2,
