@@ -15,6 +15,7 @@ from threedfs.io.depth_maps import read_depth_map
 from threedfs.io.keyframes import read_keyframes
 from threedfs.job import Job
 from threedfs.params.consistency import ConsistencyParams
+from threedfs.params.rules import make_rule
 
 _KEPT = 100
 """Depth maps in memory, each of which is read for many others: 100 MB of crops, 370 MB of whole frames."""
@@ -51,7 +52,7 @@ def run(
     agreements = check_consistency(
         views,
         read_depth,
-        ComparisonRule(params.depth_tolerance, params.max_views, params.witness_share),
+        make_rule(ComparisonRule, params, tolerance=params.depth_tolerance),
         job.threads,
     )
 

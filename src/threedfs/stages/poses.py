@@ -206,15 +206,12 @@ def _path_rule(params: PosesParams, step: int) -> PathRule:
         max_direction=np.radians(params.closure_direction),
         min_cover=params.closure_cover,
     )
-    return PathRule(
-        overlap=params.overlap,
-        gap_overlap=params.gap_overlap,
-        min_motion=params.min_motion,
-        max_flat_share=params.max_flat_share,
+    return make_rule(
+        PathRule,
+        params,
         min_inliers=params.second_try_inliers,
         min_inlier_share=params.second_try_share,
         max_bend=np.radians(params.closure_rotation),
-        min_agreement=params.min_agreement,
         closure=closure if params.closures else None,
     )
 
