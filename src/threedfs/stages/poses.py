@@ -82,9 +82,7 @@ def run(
     """
     cv2.setNumThreads(1)  # threads are given whole frames
     store, found = read_frames(frames), read_features(features)
-    rule = MatchRule(
-        params.max_ratio, params.max_descriptor_angle, params.min_matches, params.max_match_error, params.focal_factor
-    )
+    rule = make_rule(MatchRule, params, max_angle=params.max_descriptor_angle, max_error=params.max_match_error)
     described = list(found.values())
     matcher = PairMatcher(FrameFeatures(described, store.shape, store.ordered), rule, job.seed, job.threads)
     images = np.stack([cv2.cvtColor(store.image(name), cv2.COLOR_RGB2GRAY) for name in store.names])
