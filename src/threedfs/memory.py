@@ -14,6 +14,7 @@ _BYTES_PER_VOXEL = {
     "locate_object": 30,
     "object": 60,
     "cut_object": 150,
+    "surface": 150,
     "segment": 140,
     "volumetric_cut": 120,
 }

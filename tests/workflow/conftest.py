@@ -47,6 +47,7 @@ SIGNATURES = {
     "segment": ("field located support keyframes crops superpixels semidense depth consistency", "labels", "cut"),
     "volumetric_cut": ("support keyframes crops semidense", "labels", ""),
     "cut_object": ("labels field support keyframes poses crops", "mesh silhouettes masks", "method"),
+    "surface": ("labels keyframes depth consistency support poses crops", "mesh silhouettes masks", "method fusion"),
     "pixel_masks": ("labels keyframes poses frames", "silhouettes masks", "method"),
     "poisson": ("cloud support keyframes poses frames", "mesh silhouettes masks", ""),
     "object": ("field located keyframes poses frames", "mesh volume silhouettes masks", "method"),

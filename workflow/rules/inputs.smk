@@ -17,6 +17,7 @@ CUTS = {  # which labels of voxels the other methods with a mesh take it from
     "gc_select": "joint",
     "sdf_2d3d_voxel": "joint",
 }
+SURFACES = {"surface": "joint"}  # methods that weigh depth against masks
 PIXEL_CUTS = {"gc_2d": "images", "gc_2d3d_pixel": "joint"}  # methods of masks alone
 METHODS = [
     *config["methods"],
@@ -105,7 +106,7 @@ def mesh_of_method(wildcards):
 
 def labels_of_method(wildcards):
     """Return the labels that a method takes the object from."""
-    cut = (CUTS | PIXEL_CUTS)[wildcards.method]
+    cut = (CUTS | PIXEL_CUTS | SURFACES)[wildcards.method]
     own = "segment" in VARIANTS.get(wildcards.variant[1:], {})
     name = f"{cut}{wildcards.variant if own else ''}"
     return f"results/{wildcards.sequence}/10_segment/{name}.zarr.zip"

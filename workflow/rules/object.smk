@@ -125,3 +125,38 @@ rule pixel_masks:
         "Masks of {wildcards.sequence} by {wildcards.method}{wildcards.variant}."
     script:
         "../scripts/run_stage.py"
+
+
+rule surface:
+    input:
+        labels=labels_of_method,
+        keyframes="results/{sequence}/04_crops/keyframes.json",
+        depth="results/{sequence}/06_depth",
+        consistency="results/{sequence}/07_fusion/consistency.zarr.zip",
+        support="results/{sequence}/03_scene/support.json",
+        poses="results/{sequence}/02_poses/poses.json",
+        crops="results/{sequence}/04_crops/crops.zarr.zip",
+    output:
+        mesh="results/{sequence}/11_object/{method}{variant}/mesh.ply",
+        silhouettes="results/{sequence}/11_object/{method}{variant}/silhouettes.zarr.zip",
+        masks=directory("results/{sequence}/11_object/{method}{variant}/masks"),
+    log:
+        "results/{sequence}/logs/object/{method}{variant}.log",
+    benchmark:
+        "results/{sequence}/benchmarks/object/{method}{variant}.tsv"
+    wildcard_constraints:
+        method="|".join(SURFACES),
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: THREADS
+    resources:
+        mem_mb=memory_of("surface"),
+    params:
+        code=code_of("surface"),
+        settings=settings_of("surface"),
+        seed=config["seed"],
+        labels=lambda wildcards: {"fusion": settings_of("fuse_object")(wildcards)},
+    message:
+        "Surface of {wildcards.sequence} by {wildcards.method}{wildcards.variant}."
+    script:
+        "../scripts/run_stage.py"

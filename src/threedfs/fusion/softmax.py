@@ -145,6 +145,14 @@ class SoftMaximum:
             *self._settings,
         )
 
+    def add_field(self, field: np.ndarray, trust: float) -> None:
+        """Let a field (nx, ny, nz) in [-1, 1] vote everywhere, with one trust in [0, 1], as a view's surface does."""
+        check_shape(field, self.grid.shape, "field")
+        vote = np.exp(self._settings[1] * (field.astype(np.float64) - 1) - self._distrust * (1 - trust))
+        self._weighted += vote * field
+        self._weight += vote
+        self._seen += self._seen < 255
+
     def _rate(self, camera: Camera, depth: np.ndarray, confidence: np.ndarray) -> np.ndarray:
         """Return the trust in each pixel, (H, W) float64 in [0, 1]."""
         trust = confidence.astype(np.float64)

@@ -20,14 +20,15 @@ METHODS = (
     "gc_2d3d_voxel",
     "gc_select",
     "sdf_2d3d_voxel",
+    "surface",
     "tsdf",
     "soft_maximum",
     "hard_maximum",
     "poisson",
 )
-JOINT_METHODS = ("gc_2d3d_pixel", "gc_2d3d_voxel", "gc_select", "sdf_2d3d_voxel")
+JOINT_METHODS = ("gc_2d3d_pixel", "gc_2d3d_voxel", "gc_select", "sdf_2d3d_voxel", "surface")
 """Methods that take the object from the joint segmentation: those that have variants."""
-VARIED_STAGES = ("segment", "cut_object")
+VARIED_STAGES = ("segment", "cut_object", "surface")
 """What a variant of them may change."""
 NAMES_OF_SEQUENCES = ("sequences", "cylinder_sequences")
 """Parameters that name sequences, and mean nothing for a single one."""

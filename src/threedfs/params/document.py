@@ -42,7 +42,7 @@ sequences: {}
 skip_absent: false
 
 # How the object is made: fused_sdf, deformed_sdf, volumetric_gc, gc_2d, gc_2d3d_pixel, gc_2d3d_voxel, gc_select,
-# sdf_2d3d_voxel, tsdf, soft_maximum, hard_maximum, poisson.
+# sdf_2d3d_voxel, surface, tsdf, soft_maximum, hard_maximum, poisson.
 methods: [sdf_2d3d_voxel, gc_2d3d_pixel]
 
 # The joint segmentation with other settings, beside the configured one: tables tell what each changes.
@@ -134,8 +134,8 @@ _KEYS = {
     "(the views weighed by trust), `deformed_sdf` (its zero level moved onto surface points), `volumetric_gc` (voxels "
     "cut by colour alone), `gc_2d` (images cut by colour, only masks), `gc_2d3d_pixel` (images and voxels cut in one, "
     "only masks), `gc_2d3d_voxel` (its voxels), `gc_select` (their largest piece), `sdf_2d3d_voxel` (the field inside "
-    "that piece), `tsdf` (KinectFusion's weighted average), `soft_maximum` (Eq. 15 as printed), `hard_maximum` (Eq. "
-    "13), `poisson` (the surface points alone)",
+    "that piece), `surface` (confirmed depth and the hull of the masks), `tsdf` (KinectFusion's weighted average), "
+    "`soft_maximum` (Eq. 15 as printed), `hard_maximum` (Eq. 13), `poisson` (the surface points alone)",
     "variants.<name>": "the methods of the joint segmentation once more with settings of its own, "
     "`{segment: {table: false}, cut_object: {...}}`; results are called `METHOD@NAME`, and a table tells how the IoU "
     "changes. `ablation.yaml` has one for every term and option",

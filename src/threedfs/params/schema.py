@@ -38,6 +38,7 @@ STAGES = (
     "volumetric_cut",
     "object",
     "cut_object",
+    "surface",
     "poisson",
     "evaluate_reconstruction",
     "evaluate",

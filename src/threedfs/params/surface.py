@@ -1,0 +1,64 @@
+"""Parameters of the surface stage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from threedfs.params.field import parameter
+
+
+@dataclass(frozen=True)
+class SurfaceParams:
+    """How the method surface weighs confirmed depth against the hull of the masks."""
+
+    agree_from: float = parameter(
+        2.0, "views that agree with a depth up to which it is not trusted for it", minimum=0.0
+    )
+    agree_full: float = parameter(5.0, "views that agree with a depth from which it is trusted fully", minimum=0.0)
+    matched: float = parameter(
+        0.01,
+        "photometric confidence from which the photographs of a pixel match",
+        equation="Eq. 11",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    matched_from: float = parameter(
+        0.1,
+        "share of matched pixels around one up to which depth that few views see is not trusted",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    matched_full: float = parameter(
+        0.4,
+        "share of matched pixels around one from which depth that no view contradicts is trusted fully",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    matched_reach: float = parameter(
+        0.05,
+        "standard deviation of that neighbourhood",
+        unit="length of the object in the image",
+        exclusive_minimum=0.0,
+        maximum=1.0,
+    )
+    hull_trust: float = parameter(
+        0.4,
+        "trust that the hull of the masks counts as much as, against depth",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    hull_tolerance: float = parameter(
+        0.05, "share of the masks that may be wrong in the hull that is weighed", minimum=0.0, maximum=1.0
+    )
+    bound_tolerance: float = parameter(
+        0.2, "share of the masks that may be wrong in the hull that nothing leaves", minimum=0.0, maximum=1.0
+    )
+    median: bool = parameter(True, "the field becomes its median over a voxel and the 6 beside it")
+    smoothing_steps: int = parameter(3, "steps of the mesh's smoothing", equation="Sec. 3.5", minimum=0, maximum=100)
+    smoothing_contrast: float = parameter(
+        0.5,
+        "bend of the surface at a vertex from which it is kept as an edge",
+        unit="mean edge",
+        equation="Sec. 3.5",
+        exclusive_minimum=0.0,
+    )

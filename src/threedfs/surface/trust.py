@@ -1,0 +1,60 @@
+"""How far a depth map is to be believed where it leaves the hull of the masks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter
+
+
+@dataclass(frozen=True)
+class TrustRule:
+    """When depth counts as confirmed; `SurfaceParams` says more of each value."""
+
+    agree_from: float
+    agree_full: float
+    matched: float
+    matched_from: float
+    matched_full: float
+
+
+def trust_depth(
+    agree: np.ndarray,
+    confidence: np.ndarray,
+    photometric: np.ndarray,
+    mask: np.ndarray,
+    reach: float,
+    rule: TrustRule,
+) -> np.ndarray:
+    """Return the trust in a depth map, (H, W) float32 in [0, 1], by what other views and photographs say of it.
+
+    Not in the paper. Depth is trusted that many views have found too; or, as few views see into a hollow, that none
+    contradicts and that lies among pixels whose photographs match. On a bare face a few views agree on a wrong depth,
+    and the share of agreement among those that say anything is high; but no photograph confirms it far and wide.
+
+    Parameters
+    ----------
+    agree : (H, W) uint8
+        Views that have a surface where the pixel has it (`Agreement`).
+    confidence : (H, W) float32
+        Share of agreement, in [0, 1] (`rate_confidence`).
+    photometric : (H, W) float32
+        Confidence of the depth by the keyframe's own photographs (3.2, Eq. 11).
+    mask : (H, W) bool
+        The object: matches on what surrounds it say nothing of it.
+    reach : float
+        Standard deviation of the neighbourhood, pixels.
+    rule : TrustRule
+    """
+    seen = _rise(agree.astype(np.float64), rule.agree_from, rule.agree_full)
+    inside = mask.astype(np.float64)
+    around = np.maximum(gaussian_filter(inside, reach), 1e-3)
+    share = gaussian_filter((photometric > rule.matched) * inside, reach) / around
+    matched = _rise(share, rule.matched_from, rule.matched_full) * confidence
+    return np.maximum(seen, matched).astype(np.float32)
+
+
+def _rise(values: np.ndarray, start: float, full: float) -> np.ndarray:
+    """Return 0 up to `start`, 1 from `full` on, and a line between."""
+    return np.clip((values - start) / max(full - start, 1e-9), 0.0, 1.0)

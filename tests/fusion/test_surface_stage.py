@@ -1,0 +1,158 @@
+"""Contract: the stage surface on a sphere on a table, some of whose depth is wrong and not confirmed."""
+
+import numpy as np
+import pytest
+import trimesh
+
+from threedfs.errors import UserError
+from threedfs.geometry.projection import backproject_map
+from threedfs.geometry.similarity import Similarity
+from threedfs.io.consistency import ConsistencyMap, write_consistency
+from threedfs.io.crops import Crop, write_crops
+from threedfs.io.depth_maps import DepthMap, write_depth_map
+from threedfs.io.images import read_mask
+from threedfs.io.keyframes import write_keyframes
+from threedfs.io.poses import Poses, write_poses
+from threedfs.io.segmentation import Segmentation, write_segmentation
+from threedfs.io.volumes import write_support
+from threedfs.job import Job
+from threedfs.params.fuse_object import FuseObjectParams
+from threedfs.params.surface import SurfaceParams
+from threedfs.progress import Progress
+from threedfs.stages import surface
+from threedfs.types import Box, Keyframe, Plane, Support, VoxelGrid
+
+SIDE = 44
+BEHIND = 1.12
+"""Depth in a pit over the true depth."""
+
+
+def shows_sphere(table, view, depth):
+    points = backproject_map(view, depth)
+    return np.linalg.norm(points - table.centre, axis=-1) < table.radius + 1e-6
+
+
+def write_scene(folder, table, *, pit=False, empty=False):
+    """Write what the stage reads; with a pit, one side of the sphere is bare, and its depth too far away."""
+    views, maps, masks = table.views, {}, {}
+    for rank, view in enumerate(views):
+        depth = table.depth(view)
+        masks[view.name] = shows_sphere(table, view, depth) & (not empty)
+        points = backproject_map(view, depth)
+        bare = masks[view.name] & (points[..., 0] > table.centre[0] + 0.4 * table.radius) & pit
+        depth = np.where(bare, BEHIND * depth, depth).astype(np.float32)
+        photometric = np.where(bare, 0.0, 0.3).astype(np.float32)
+        write_depth_map(folder / "depth" / f"{view.name}.zarr.zip", DepthMap(depth, 0 * photometric, photometric), {})
+        agree = np.where(bare, 1 + rank % 2, 6).astype(np.uint8)
+        silent, free = np.zeros_like(agree), np.zeros(agree.shape, np.float32)
+        ones = np.ones(agree.shape, np.float32)
+        maps[view.name] = ConsistencyMap(confidence=ones, agree=agree, too_near=silent, too_far=silent, free_depth=free)
+    write_consistency(folder / "consistency.zarr.zip", maps.items(), {})
+    write_keyframes(folder / "keyframes.json", [Keyframe(view, (), 0.5, 3.0) for view in views], {}, object_pixels=80.0)
+    spacing = 2.6 * table.radius / SIDE
+    grid = VoxelGrid(table.centre - 1.3 * table.radius, spacing, (SIDE + 1,) * 3)
+    nothing = np.zeros(0)
+    cut = Segmentation(masks, grid, np.ones(grid.shape, np.uint8), nothing, nothing.astype(np.int64))
+    write_segmentation(folder / "labels.zarr.zip", cut, {})
+    box = Box(np.eye(3), table.centre - 1.3 * table.radius, table.centre + 1.3 * table.radius)
+    figures = {"thickness": 2 * table.radius}
+    write_support(folder / "support.json", Support(Plane(np.array([0.0, 0.0, 1.0]), 0.0), box, figures), {})
+    same = Similarity(1.0, np.eye(3), np.zeros(3))
+    write_poses(folder / "poses.json", Poses(tuple(views), (), (0.0, 0.0), same), {})
+    blank = [
+        Crop(view.name, np.zeros((*view.camera.shape, 3), np.uint8), np.ones(view.camera.shape, bool)) for view in views
+    ]
+    write_crops(folder / "crops.zarr.zip", blank, {}, ordered=True, source_shape=views[0].camera.shape)
+
+
+def work(folder, **changes):
+    """Run the stage; return the mesh, and the bytes that it wrote."""
+    fusion = FuseObjectParams(clip_distance=5.0)
+    surface.run(
+        labels=folder / "labels.zarr.zip",
+        keyframes=folder / "keyframes.json",
+        depth=sorted((folder / "depth").iterdir()),
+        consistency=folder / "consistency.zarr.zip",
+        support=folder / "support.json",
+        poses=folder / "poses.json",
+        crops=folder / "crops.zarr.zip",
+        mesh=folder / "mesh.ply",
+        silhouettes=folder / "silhouettes.zarr.zip",
+        masks=folder / "masks",
+        method="surface",
+        fusion=vars(fusion),
+        params=SurfaceParams(**changes),
+        job=Job(Progress("test"), {"provenance": "test"}),
+    )
+    mesh = trimesh.load(folder / "mesh.ply", process=True)
+    return mesh, [path.read_bytes() for path in (folder / "mesh.ply", folder / "silhouettes.zarr.zip")]
+
+
+@pytest.fixture(scope="module")
+def right(table, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("right")
+    write_scene(folder, table)
+    return folder
+
+
+@pytest.fixture(scope="module")
+def pitted(table, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("pitted")
+    write_scene(folder, table, pit=True)
+    return folder
+
+
+def deepest(mesh, table):
+    """Return how far the surface over the foot reaches into the sphere, in radii."""
+    upper = mesh.vertices[mesh.vertices[:, 2] > 0.6 * table.radius]
+    return 1 - np.linalg.norm(upper - table.centre, axis=1).min() / table.radius
+
+
+def test_right_depth_gives_the_sphere(right, table):
+    mesh, _ = work(right)
+    assert mesh.is_watertight and mesh.is_winding_consistent and mesh.volume > 0
+    assert deepest(mesh, table) < 0.06
+    for view in table.views:
+        drawn = read_mask(right / "masks" / f"{view.name}.png")
+        shown = shows_sphere(table, view, table.depth(view))
+        assert (drawn & shown).sum() / (drawn | shown).sum() > 0.94
+
+
+def test_depth_that_nothing_confirms_carves_no_pit(pitted, table):
+    """Property: the hull closes what wrong depth opens; with all depth believed the pit is there."""
+    closed = deepest(work(pitted, matched_reach=0.01)[0], table)
+    believed = deepest(work(pitted, agree_from=0.0, agree_full=1.0, hull_trust=0.0)[0], table)
+    assert closed < 0.1 < 0.2 < believed
+
+
+def test_the_same_bytes_twice(pitted):
+    assert work(pitted)[1] == work(pitted)[1]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"agree_from": 0.0},
+        {"agree_full": 20.0},
+        {"matched": 0.5},
+        {"matched_from": 0.0, "matched_reach": 0.3},
+        {"matched_full": 1.0},
+        {"matched_reach": 0.3},
+        {"hull_trust": 0.9},
+        {"hull_tolerance": 0.4},
+        {"bound_tolerance": 0.0},
+        {"median": False},
+        {"smoothing_steps": 0},
+        {"smoothing_contrast": 5.0},
+    ],
+    ids=str,
+)
+def test_every_parameter_acts(pitted, change):
+    assert work(pitted, **change)[1][0] != work(pitted)[1][0]
+
+
+def test_without_masks_it_is_refused(table, tmp_path):
+    write_scene(tmp_path, table, empty=True)
+    with pytest.raises(UserError, match="masks of the object in the keyframes, found them all empty"):
+        work(tmp_path)
+    assert not (tmp_path / "mesh.ply").exists()

@@ -1,0 +1,45 @@
+"""Trust in depth: what confirms it and what does not."""
+
+import numpy as np
+import pytest
+
+from threedfs.surface.trust import TrustRule, trust_depth
+
+RULE = TrustRule(agree_from=2.0, agree_full=5.0, matched=0.01, matched_from=0.1, matched_full=0.4)
+SHAPE = (40, 60)
+INSIDE = np.ones(SHAPE, bool)
+
+
+def rate(agree, confidence=1.0, photometric=0.0, mask=INSIDE, reach=5.0, rule=RULE):
+    maps = (np.full(SHAPE, value, kind) for value, kind in ((agree, np.uint8), (confidence, np.float32)))
+    return trust_depth(*maps, np.broadcast_to(np.float32(photometric), SHAPE), mask, reach, rule)
+
+
+@pytest.mark.parametrize(("agree", "trust"), [(0, 0.0), (2, 0.0), (3, 1 / 3), (5, 1.0), (9, 1.0)])
+def test_many_views_confirm_a_bare_face(agree, trust):
+    np.testing.assert_allclose(rate(agree), trust, atol=1e-6)
+
+
+def test_agreement_of_the_few_that_speak_does_not_confirm_a_bare_face():
+    assert rate(1, confidence=1.0, photometric=0.0).max() == 0
+
+
+def test_where_photographs_match_few_views_are_believed_as_far_as_none_contradicts():
+    np.testing.assert_allclose(rate(1, confidence=0.7, photometric=0.5), 0.7, atol=1e-6)
+
+
+def test_a_pixel_is_helped_by_matches_around_it_on_the_object_alone():
+    photometric = np.zeros(SHAPE, np.float32)
+    photometric[:, :30] = 0.5
+    beside = rate(1, photometric=photometric)
+    assert beside[20, 32] > 0.5 > beside[20, 55] == 0
+    table = np.zeros(SHAPE, bool)
+    table[:, 30:] = True
+    assert rate(1, photometric=photometric, mask=table)[20, 32] == 0
+
+
+def test_a_wider_neighbourhood_reaches_farther():
+    photometric = np.zeros(SHAPE, np.float32)
+    photometric[:, :30] = 0.5
+    near, far = (rate(1, photometric=photometric, reach=reach)[20, 42] for reach in (3.0, 15.0))
+    assert near == 0 < far
