@@ -43,7 +43,7 @@ def write_scene(folder, table, *, pit=False, empty=False):
         depth = np.where(bare, BEHIND * depth, depth).astype(np.float32)
         photometric = np.where(bare, 0.0, 0.3).astype(np.float32)
         write_depth_map(folder / "depth" / f"{view.name}.zarr.zip", DepthMap(depth, 0 * photometric, photometric), {})
-        agree = np.where(bare, 1 + rank % 2, 6).astype(np.uint8)
+        agree = np.where(bare, 1 + rank % 2, 9).astype(np.uint8)
         silent, free = np.zeros_like(agree), np.zeros(agree.shape, np.float32)
         ones = np.ones(agree.shape, np.float32)
         maps[view.name] = ConsistencyMap(confidence=ones, agree=agree, too_near=silent, too_far=silent, free_depth=free)
@@ -133,7 +133,7 @@ def test_the_same_bytes_twice(pitted):
     "change",
     [
         {"agree_from": 0.0},
-        {"agree_full": 20.0},
+        {"agree_full": 20.0, "matched_full": 1.0},
         {"matched": 0.5},
         {"matched_from": 0.0, "matched_reach": 0.3},
         {"matched_full": 1.0},

@@ -14,7 +14,7 @@ class SurfaceParams:
     agree_from: float = parameter(
         2.0, "views that agree with a depth up to which it is not trusted for it", minimum=0.0
     )
-    agree_full: float = parameter(5.0, "views that agree with a depth from which it is trusted fully", minimum=0.0)
+    agree_full: float = parameter(8.0, "views that agree with a depth from which it is trusted fully", minimum=0.0)
     matched: float = parameter(
         0.01,
         "photometric confidence from which the photographs of a pixel match",
