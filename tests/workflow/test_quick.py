@@ -19,7 +19,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SAMPLE = ROOT / "resources" / "sample"
 SEQUENCES = """\
 dataset: quick
-methods: [fused_sdf, gc_2d, gc_2d3d_pixel, sdf_2d3d_voxel, volumetric_gc]
+methods: [fused_sdf, gc_2d, gc_2d3d_pixel, sdf_2d3d_voxel, surface, volumetric_gc]
 sequences:
   gnome:
     source: {sample}/video.mp4
@@ -84,9 +84,11 @@ def test_the_segmentation_is_measured_with_and_without_a_mesh(run):
         (row.method, row.name): row.value for row in read_metrics(results / "tables/metrics.csv") if not row.keyframe
     }
     overlap = {method: value for (method, name), value in found.items() if name == "iou_mean"}
-    assert {"gc_2d", "gc_2d3d_pixel", "sdf_2d3d_voxel", "volumetric_gc"} < set(overlap), output
+    assert {"gc_2d", "gc_2d3d_pixel", "sdf_2d3d_voxel", "surface", "volumetric_gc"} < set(overlap), output
     assert min(overlap["gc_2d3d_pixel"], overlap["sdf_2d3d_voxel"]) > 0.6
     assert found["sdf_2d3d_voxel", "mesh_closed"] == found["sdf_2d3d_voxel", "mesh_pieces"] == 1
+    assert found["surface", "mesh_closed"] == found["surface", "mesh_pieces"] == 1
+    assert overlap["surface"] > 0.6
     assert found["sdf_2d3d_voxel", "mesh_filled"] > 0 and ("gc_2d3d_pixel", "mesh_closed") not in found
 
 

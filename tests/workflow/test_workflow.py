@@ -237,11 +237,12 @@ def test_patches_are_matched_here_unless_the_gpu_does(finished, engine, gpu, mat
 
 
 def test_methods_of_the_segmentation_share_their_cuts(finished):
-    """Contract: two cuts serve six methods; those of pixels have masks and no mesh, and are measured without one."""
+    """Contract: two cuts serve seven methods; those of pixels have masks and no mesh, and are measured without one."""
     cuts = {"gc_2d": "images", "gc_2d3d_pixel": "joint", "gc_2d3d_voxel": "joint", "sdf_2d3d_voxel": "joint"}
+    cuts["surface"] = "joint"
     (finished.folder / "cuts.yaml").write_text(f"methods: [{', '.join(cuts)}, gc_select, volumetric_gc]\n")
     output = finished.run("--configfile", "cuts.yaml")
-    expected = {"segment": 2, "volumetric_cut": 1, "cut_object": 4, "pixel_masks": 2, "evaluate": 6}
+    expected = {"segment": 2, "volumetric_cut": 1, "cut_object": 4, "surface": 1, "pixel_masks": 2, "evaluate": 7}
     assert jobs_done(output) == Counter({**expected, "collect": 1})
     results = finished.folder / "results/sample"
     for method, cut in cuts.items():
