@@ -4,7 +4,7 @@
 
 Four keyframes side by side; from top to bottom the crop with the mask's outline, the depth (near is red), the
 normals of the depth, and the mesh as the same camera sees it. Masks are those of gc_2d3d_pixel and the mesh that of
-surface where no methods are named.
+sdf_2d3d_voxel where no methods are named.
 """
 
 from __future__ import annotations
@@ -79,7 +79,7 @@ def fit(image: np.ndarray, width: int, height: int) -> np.ndarray:
     return tile
 
 
-def main(results: Path, picture: Path, masks: str = "gc_2d3d_pixel", surface: str = "surface") -> None:
+def main(results: Path, picture: Path, masks: str = "gc_2d3d_pixel", surface: str = "sdf_2d3d_voxel") -> None:
     """Draw one picture: the masks of one method, the mesh of another."""
     crops = read_crops(results / "04_crops/crops.zarr.zip")
     keyframes = read_keyframes(results / "04_crops/keyframes.json")

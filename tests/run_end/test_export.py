@@ -17,7 +17,7 @@ from threedfs.types import Box, Mesh, Plane, Support
 def results(tmp_path):
     """Results of a sequence: a ball on a tilted plane."""
     ball = trimesh.creation.icosphere(subdivisions=2)
-    write_mesh(tmp_path / "11_object/surface/mesh.ply", Mesh(ball.vertices, ball.faces))
+    write_mesh(tmp_path / "11_object/sdf_2d3d_voxel/mesh.ply", Mesh(ball.vertices, ball.faces))
     plane = Plane(np.array([0.6, 0.0, 0.8]), 1.0)
     write_support(
         tmp_path / "07_fusion/support.json",

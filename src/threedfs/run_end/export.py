@@ -2,7 +2,7 @@
 
     python -m threedfs.run_end.export results/my 95 my.stl [METHOD]
 
-The format is that of the file's ending: stl, ply, obj or glb. METHOD is surface where none is given.
+The format is that of the file's ending: stl, ply, obj or glb. METHOD is sdf_2d3d_voxel where none is given.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from threedfs.object.stand import stand_up
 _FORMATS = (".stl", ".ply", ".obj", ".glb")
 
 
-def export(sequence: Path, height: str, file: Path, method: str = "surface") -> None:
+def export(sequence: Path, height: str, file: Path, method: str = "sdf_2d3d_voxel") -> None:
     """Write a sequence's mesh with its support plane at z = 0.
 
     Parameters
