@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,6 +12,37 @@ from threedfs.errors import UserError
 from threedfs.fusion.hard_maximum import HardMaximum
 from threedfs.fusion.softmax import SoftMaximum
 from threedfs.fusion.weighted_average import WeightedAverage
+from threedfs.types import VoxelGrid
+
+
+@dataclass(frozen=True)
+class VoteRule:
+    """How views vote in the soft maximum; `SoftMaximum` and `FusionSettings` say more of each value."""
+
+    softmax_hardness: float
+    distrust: float
+    hidden: float
+    depth_discontinuity: float
+    facing: float
+    trust_blur: float
+
+
+def start_fusion(
+    grid: VoxelGrid, clip_distance: float, rule: VoteRule, *, hidden_distance: float = math.inf, threads: int = 1
+) -> SoftMaximum:
+    """Return a soft maximum without votes; distances in scene units, as `SoftMaximum` takes them."""
+    return SoftMaximum(
+        grid,
+        clip_distance,
+        rule.softmax_hardness,
+        distrust=rule.distrust,
+        hidden=rule.hidden,
+        hidden_distance=hidden_distance,
+        discontinuity=rule.depth_discontinuity,
+        facing=rule.facing,
+        trust_blur=rule.trust_blur,
+        threads=threads,
+    )
 
 
 def fuse_views(

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from threedfs.fusion.fuse import fuse_views, limit_clip_distance
-from threedfs.fusion.softmax import SoftMaximum
+from threedfs.fusion.fuse import VoteRule, fuse_views, limit_clip_distance, start_fusion
 from threedfs.geometry.grid import cover_box
 from threedfs.io.consistency import read_consistency
 from threedfs.io.keyframes import read_keyframes
@@ -13,6 +12,7 @@ from threedfs.io.volumes import Volume, read_support, write_volume
 from threedfs.io.votes import read_votes
 from threedfs.job import Job
 from threedfs.params.fuse_object import FuseObjectParams
+from threedfs.params.rules import make_rule
 
 
 def run(
@@ -31,16 +31,11 @@ def run(
     clip_distance = limit_clip_distance(
         params.clip_distance, place.figures["thickness"], params.thickness_share, grid.spacing
     )
-    fused = SoftMaximum(
+    fused = start_fusion(
         grid,
         clip_distance,
-        params.softmax_hardness,
-        distrust=params.distrust,
-        hidden=params.hidden,
+        make_rule(VoteRule, params),
         hidden_distance=params.hidden_distance * grid.spacing,
-        discontinuity=params.depth_discontinuity,
-        facing=params.facing,
-        trust_blur=params.trust_blur,
         threads=job.threads,
     )
     trust = read_consistency(consistency) if params.weighting == "consistency" else None

@@ -6,8 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from threedfs.fusion.fuse import fuse_views
-from threedfs.fusion.softmax import SoftMaximum
+from threedfs.fusion.fuse import VoteRule, fuse_views, start_fusion
 from threedfs.geometry.grid import cover_box
 from threedfs.io.consistency import read_consistency
 from threedfs.io.keyframes import read_keyframes
@@ -18,6 +17,7 @@ from threedfs.job import Job
 from threedfs.locate.fixation import find_fixation, viewing_distance
 from threedfs.locate.region import scene_region
 from threedfs.params.fuse_scene import FuseSceneParams
+from threedfs.params.rules import make_rule
 
 
 def run(
@@ -44,15 +44,10 @@ def run(
         params.region_reach * distance,
     )
     grid = cover_box(region, params.longest_side)
-    fused = SoftMaximum(
+    fused = start_fusion(
         grid,
         params.clip_distance * grid.spacing,
-        params.softmax_hardness,
-        distrust=params.distrust,
-        hidden=params.hidden,
-        discontinuity=params.depth_discontinuity,
-        facing=params.facing,
-        trust_blur=params.trust_blur,
+        make_rule(VoteRule, params),
         threads=job.threads,
     )
     trust = read_consistency(consistency) if params.weighting == "consistency" else None

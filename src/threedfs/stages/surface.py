@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from threedfs.errors import UserError
-from threedfs.fusion.fuse import limit_clip_distance
-from threedfs.fusion.softmax import SoftMaximum
+from threedfs.fusion.fuse import VoteRule, limit_clip_distance, start_fusion
 from threedfs.io.consistency import read_consistency
 from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_depth_map
@@ -88,16 +87,11 @@ def run(
         ramp=clip / cut.grid.spacing,
         tolerances=(params.hull_tolerance, params.bound_tolerance),
     )
-    fused = SoftMaximum(
+    fused = start_fusion(
         cut.grid,
         clip,
-        fused_as.softmax_hardness,
-        distrust=fused_as.distrust,
-        hidden=fused_as.hidden,
+        make_rule(VoteRule, fused_as),
         hidden_distance=fused_as.hidden_distance * cut.grid.spacing,
-        discontinuity=fused_as.depth_discontinuity,
-        facing=fused_as.facing,
-        trust_blur=fused_as.trust_blur,
         threads=job.threads,
     )
     paths = {path.name.removesuffix(".zarr.zip"): path for path in depth}
