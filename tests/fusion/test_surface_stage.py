@@ -25,6 +25,8 @@ from threedfs.types import Box, Keyframe, Plane, Support, VoxelGrid
 SIDE = 44
 BEHIND = 1.12
 """Depth in a pit over the true depth."""
+FAR_BEHIND = 1.6
+"""The same where a side is lost: depth of what lies beyond it."""
 
 
 def shows_sphere(table, view, depth):
@@ -32,18 +34,21 @@ def shows_sphere(table, view, depth):
     return np.linalg.norm(points - table.centre, axis=-1) < table.radius + 1e-6
 
 
-def write_scene(folder, table, *, pit=False, empty=False):
-    """Write what the stage reads; with a pit, one side of the sphere is bare, and its depth too far away."""
+def write_scene(folder, table, *, pit=False, lost=False, empty=False):
+    """Write what the stage reads.
+
+    With a pit, one side of the sphere is bare, and its depth too far away; with that side lost, all views agree on it.
+    """
     views, maps, masks = table.views, {}, {}
     for rank, view in enumerate(views):
         depth = table.depth(view)
         masks[view.name] = shows_sphere(table, view, depth) & (not empty)
         points = backproject_map(view, depth)
-        bare = masks[view.name] & (points[..., 0] > table.centre[0] + 0.4 * table.radius) & pit
-        depth = np.where(bare, BEHIND * depth, depth).astype(np.float32)
+        bare = masks[view.name] & (points[..., 0] > table.centre[0] + 0.4 * table.radius) & (pit or lost)
+        depth = np.where(bare, (FAR_BEHIND if lost else BEHIND) * depth, depth).astype(np.float32)
         photometric = np.where(bare, 0.0, 0.3).astype(np.float32)
         write_depth_map(folder / "depth" / f"{view.name}.zarr.zip", DepthMap(depth, 0 * photometric, photometric), {})
-        agree = np.where(bare, 1 + rank % 2, 9).astype(np.uint8)
+        agree = np.where(bare & pit, 1 + rank % 2, 9).astype(np.uint8)
         silent, free = np.zeros_like(agree), np.zeros(agree.shape, np.float32)
         ones = np.ones(agree.shape, np.float32)
         maps[view.name] = ConsistencyMap(confidence=ones, agree=agree, too_near=silent, too_far=silent, free_depth=free)
@@ -121,7 +126,7 @@ def test_right_depth_gives_the_sphere(right, table):
 def test_depth_that_nothing_confirms_carves_no_pit(pitted, table):
     """Property: the hull closes what wrong depth opens; with all depth believed the pit is there."""
     closed = deepest(work(pitted, matched_reach=0.01)[0], table)
-    believed = deepest(work(pitted, agree_from=0.0, agree_full=1.0, hull_trust=0.0)[0], table)
+    believed = deepest(work(pitted, agree_from=0.0, agree_full=1.0, hull_trust=0.0, gap_views=99)[0], table)
     assert closed < 0.1 < 0.2 < believed
 
 
@@ -141,7 +146,9 @@ def test_the_same_bytes_twice(pitted):
         {"hull_trust": 0.9},
         {"hull_tolerance": 0.4},
         {"bound_tolerance": 0.0},
-        {"median": False},
+        {"medians": 0},
+        {"hull_yield": 0.0},
+        {"gap_views": 99},
         {"smoothing_steps": 0},
         {"smoothing_contrast": 5.0},
     ],
@@ -156,3 +163,27 @@ def test_without_masks_it_is_refused(table, tmp_path):
     with pytest.raises(UserError, match="masks of the object in the keyframes, found them all empty"):
         work(tmp_path)
     assert not (tmp_path / "mesh.ply").exists()
+
+
+def agreement(folder, table):
+    """Return the mean IoU of the masks that the stage wrote with those of the sphere."""
+    found = []
+    for view in table.views:
+        drawn, shown = (
+            read_mask(folder / "masks" / f"{view.name}.png"),
+            shows_sphere(table, view, table.depth(view)),
+        )
+        found.append((drawn & shown).sum() / (drawn | shown).sum())
+    return np.mean(found)
+
+
+def test_what_masks_show_and_no_depth_has_is_filled(table, tmp_path):
+    """Property: a side of the sphere on which all depth is wrong is there again, as its outline says."""
+    write_scene(tmp_path, table, lost=True)
+    volumes, ious = [], []
+    for change in ({"gap_views": 99}, {}):
+        mesh, _ = work(tmp_path, hull_trust=0.0, hull_yield=0.0, **change)
+        volumes.append(mesh.volume)
+        ious.append(agreement(tmp_path, table))
+    assert ious[0] < 0.8 and ious[1] > 0.93
+    assert volumes[0] < 0.7 * volumes[1]

@@ -13,11 +13,11 @@ from threedfs.fusion.weighted_average import WeightedAverage
 from threedfs.geometry.grid import cover_box, voxel_centres
 from threedfs.geometry.projection import backproject_map
 from threedfs.geometry.rigid import apply, invert, look_at, make_transform
+from threedfs.hull.gaps import fit_masks
 from threedfs.locate.component import choose_component, mark_points
 from threedfs.locate.height import add_foot, height_above
 from threedfs.locate.surface import zero_crossings
 from threedfs.object.extract import extract_surface
-from threedfs.segment.hull import fit_masks
 from threedfs.segment.outline import draw_voxels
 from threedfs.segment.table import picture_table
 from threedfs.stereo.region import mask_box

@@ -12,12 +12,12 @@ from scipy import ndimage
 from threedfs.errors import UserError
 from threedfs.evaluate.masks import intersection_over_union
 from threedfs.geometry.grid import voxel_centres
+from threedfs.hull.gaps import fit_masks
 from threedfs.locate.height import height_above
 from threedfs.params.segment import SegmentParams
 from threedfs.params.volumetric_cut import VolumetricCutParams
 from threedfs.segment.energy import OBJECT
 from threedfs.segment.gather import GatherRule, gather_images, gather_voxels
-from threedfs.segment.hull import fit_masks
 from threedfs.segment.initialise import UNDECIDED
 from threedfs.segment.joint import CutRule, segment_jointly
 from threedfs.segment.outline import draw_voxels

@@ -145,8 +145,11 @@ class SoftMaximum:
             *self._settings,
         )
 
-    def add_field(self, field: np.ndarray, trust: float) -> None:
-        """Let a field (nx, ny, nz) in [-1, 1] vote everywhere, with one trust in [0, 1], as a view's surface does."""
+    def add_field(self, field: np.ndarray, trust: float | np.ndarray) -> None:
+        """Let a field (nx, ny, nz) in [-1, 1] vote everywhere, as a view's surface does.
+
+        Its trust in [0, 1] is one, or one for each voxel.
+        """
         check_shape(field, self.grid.shape, "field")
         vote = np.exp(self._settings[1] * (field.astype(np.float64) - 1) - self._distrust * (1 - trust))
         self._weighted += vote * field

@@ -6,9 +6,7 @@ import numpy as np
 from scipy import ndimage
 
 
-def mask_field(
-    sdf: np.ndarray, owned: np.ndarray, height: np.ndarray, spacing: float, median: bool = False
-) -> np.ndarray:
+def mask_field(sdf: np.ndarray, owned: np.ndarray, height: np.ndarray, spacing: float, medians: int = 0) -> np.ndarray:
     """Return the field of the object alone, (nx, ny, nz) float32, negative inside it and nowhere else (Sec. 3.5).
 
     Outside the object the field is set to 1 where it is negative. The support plane cuts the object: below, the field
@@ -28,15 +26,16 @@ def mask_field(
         Above the plane, scene units.
     spacing : float
         Edge of a voxel, scene units.
-    median : bool
-        Whether a value becomes the median of its own and its 6 neighbours' before the plane cuts: pits, spikes and
-        handles a voxel wide go, edges and corners stay.
+    medians : int
+        How many times a value becomes the median of its own and its 6 neighbours' before the plane cuts: pits, spikes
+        and handles a voxel or two wide go, edges and corners stay.
     """
     alone = np.where((sdf < 0) & ~owned, np.float32(1), sdf).astype(np.float32)
-    if median and owned.any():
+    if medians and owned.any():
         (box,) = ndimage.find_objects(owned.astype(np.uint8))
         near = tuple(slice(max(part.start - 2, 0), part.stop + 2) for part in box)
         beside = ndimage.generate_binary_structure(3, 1)
-        alone[near] = ndimage.median_filter(alone[near], footprint=beside, mode="nearest")
+        for _ in range(medians):
+            alone[near] = ndimage.median_filter(alone[near], footprint=beside, mode="nearest")
     standing = np.where(height <= 0, sdf, alone)  # what the object stands on does not lift its foot off the plane
     return np.maximum(standing, np.clip(-height / spacing, -1, 1)).astype(np.float32)

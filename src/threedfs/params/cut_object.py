@@ -36,8 +36,11 @@ class CutObjectParams:
     gap_views: int = parameter(
         2, "views that show a voxel of the visual hull on a gap before it is filled; acts with fit_masks", minimum=1
     )
-    median: bool = parameter(
-        True, "the field becomes its median over a voxel and the 6 beside it: pits and spikes of a voxel go (paper: no)"
+    medians: int = parameter(
+        1,
+        "times that the field becomes its median over a voxel and the 6 beside it: pits and spikes go (paper: 0)",
+        minimum=0,
+        maximum=10,
     )
     smoothing_steps: int = parameter(3, "steps of the mesh's smoothing", equation="Sec. 3.5", minimum=0, maximum=100)
     smoothing_contrast: float = parameter(

@@ -42,8 +42,14 @@ class SurfaceParams:
         maximum=1.0,
     )
     hull_trust: float = parameter(
+        0.65,
+        "trust that the hull of the masks counts as much as, against depth, where no depth is confirmed",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    hull_yield: float = parameter(
         0.4,
-        "trust that the hull of the masks counts as much as, against depth",
+        "what that trust is less where all of the object's depth is confirmed, in proportion to the share that is",
         minimum=0.0,
         maximum=1.0,
     )
@@ -53,7 +59,15 @@ class SurfaceParams:
     bound_tolerance: float = parameter(
         0.2, "share of the masks that may be wrong in the hull that nothing leaves", minimum=0.0, maximum=1.0
     )
-    median: bool = parameter(True, "the field becomes its median over a voxel and the 6 beside it")
+    gap_views: int = parameter(
+        2, "views that show a voxel of the hull where nothing solid is before it is filled", minimum=1
+    )
+    medians: int = parameter(
+        2,
+        "times that the field becomes its median over a voxel and the 6 beside it: pits, spikes and handles go",
+        minimum=0,
+        maximum=10,
+    )
     smoothing_steps: int = parameter(3, "steps of the mesh's smoothing", equation="Sec. 3.5", minimum=0, maximum=100)
     smoothing_contrast: float = parameter(
         0.5,

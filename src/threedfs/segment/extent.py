@@ -6,9 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 
+from threedfs.hull.gaps import fit_masks
 from threedfs.segment.energy import OBJECT
 from threedfs.segment.gather import GatherRule, Scene, gather_images, gather_voxels
-from threedfs.segment.hull import fit_masks
 from threedfs.segment.joint import CutRule, segment_jointly
 from threedfs.segment.outline import largest_piece
 

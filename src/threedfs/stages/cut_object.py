@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from threedfs.errors import UserError
+from threedfs.hull.gaps import fit_masks
 from threedfs.io.crops import read_crops
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import write_mesh
@@ -21,7 +22,6 @@ from threedfs.object.field import mask_field
 from threedfs.object.smooth import smooth_mesh
 from threedfs.params.cut_object import CutObjectParams
 from threedfs.segment.energy import OBJECT
-from threedfs.segment.hull import fit_masks
 from threedfs.segment.outline import grow_voxels, largest_piece, surround_voxels
 from threedfs.types import Plane, View
 
@@ -96,5 +96,5 @@ def _cut_field(
         )
         owned |= filled
         job.progress.note(f"{filled.sum()} voxels filled for gaps in the masks, {(solid & (sdf > 0)).sum()} carved")
-    alone = mask_field(sdf, owned, height, grid.spacing, params.median)
+    alone = mask_field(sdf, owned, height, grid.spacing, params.medians)
     return smooth_mesh(extract_surface(alone, grid), params.smoothing_steps, params.smoothing_contrast)

@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 
+from threedfs.crops.place import measure_object
 from threedfs.errors import UserError
 from threedfs.fusion.fuse import VoteRule, limit_clip_distance, start_fusion
+from threedfs.hull.distance import measure_hull
 from threedfs.io.consistency import read_consistency
 from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_depth_map
@@ -28,11 +30,9 @@ from threedfs.params.fuse_object import FuseObjectParams
 from threedfs.params.rules import make_rule
 from threedfs.params.schema import make_params
 from threedfs.params.surface import SurfaceParams
-from threedfs.surface.hull import measure_hull
+from threedfs.surface.complete import HullRule, complete_depth
 from threedfs.surface.trust import TrustRule, trust_depth
 
-_LENGTH = 300.0
-"""Pixels of the object in the image where nothing tells."""
 _DEEPEST = -2.0
 """Voxels above the support plane from which the hull is measured."""
 
@@ -95,16 +95,19 @@ def run(
         threads=job.threads,
     )
     paths = {path.name.removesuffix(".zarr.zip"): path for path in depth}
+    corners = place.box.corners()
     rule, confirmed = make_rule(TrustRule, params), []
     for name, view in job.progress.track(views.items(), "keyframe", len(views)):
         found, said = read_depth_map(paths[name]), trust.read(name)
-        reach = params.matched_reach * (read_object_pixels(keyframes, name) or _LENGTH)
+        reach = params.matched_reach * (read_object_pixels(keyframes, name) or measure_object([view], corners) or 0.0)
         own = trust_depth(said.agree, said.confidence, found.confidence, cut.masks[name], reach, rule)
-        confirmed.append(float(own[cut.masks[name]].mean()) if cut.masks[name].any() else 0.0)
+        if cut.masks[name].any():
+            confirmed.append(float(own[cut.masks[name]].mean()))
         fused.add(view, found.depth, own)
-    fused.add_field(hull, params.hull_trust)
-    sdf = np.maximum(fused.result()[0], bound)
-    alone = mask_field(sdf, np.ones(cut.grid.shape, bool), height, cut.grid.spacing, params.median)
+    sdf = complete_depth(
+        fused, hull, bound, float(np.mean(confirmed)), height > 0, cut.masks, views, make_rule(HullRule, params)
+    )
+    alone = mask_field(sdf, np.ones(cut.grid.shape, bool), height, cut.grid.spacing, params.medians)
     surface = smooth_mesh(extract_surface(alone, cut.grid), params.smoothing_steps, params.smoothing_contrast)
     write_mesh(mesh, surface)
     job.progress.note(

@@ -6,7 +6,7 @@ import pytest
 from threedfs.geometry.grid import voxel_centres
 from threedfs.geometry.projection import backproject_map
 from threedfs.geometry.rigid import look_at
-from threedfs.surface.hull import measure_hull
+from threedfs.hull.distance import measure_hull
 from threedfs.types import Camera, View, VoxelGrid
 
 CAMERA = Camera(120, 120, 150.0, 150.0, 59.5, 59.5)

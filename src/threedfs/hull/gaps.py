@@ -1,4 +1,4 @@
-"""A field brought in line with the object's masks: carved where it sticks out of them, filled where it leaves gaps."""
+"""Gaps: what the object's masks show and no solid covers; a field brought in line with them."""
 
 from __future__ import annotations
 
@@ -11,12 +11,11 @@ from numba import njit
 from scipy import ndimage
 
 from threedfs.geometry.grid import voxel_places
+from threedfs.hull.distance import measure_hull
 from threedfs.segment.lookup import nearest_pixels
-from threedfs.segment.outline import depth_inside, draw_voxels
+from threedfs.segment.outline import draw_voxels
 from threedfs.types import View, VoxelGrid
 
-_STEPS = 30000
-"""Steps of the hull's field from 0 to 1: whole numbers of two bytes, as there is one for each voxel and view."""
 _RIM = 2
 """Half width of a gap up to which it is a rim, voxels."""
 _REACH = 3
@@ -63,37 +62,46 @@ def fit_masks(
     least_views : int
         Views that show a voxel on a gap before it is filled.
     """
+    (hull,) = measure_hull(masks, views, valid, grid, allowed, ramp=ramp, tolerances=(tolerance,))
+    filled = find_gaps(solid, hull, allowed, masks, views, grid, least_views)
+    fitted = np.where(filled, np.minimum(sdf, hull), sdf)
+    return np.where(allowed, np.maximum(fitted, hull), fitted).astype(np.float32), filled
+
+
+def find_gaps(
+    solid: np.ndarray,
+    hull: np.ndarray,
+    allowed: np.ndarray,
+    masks: Mapping[str, np.ndarray],
+    views: Mapping[str, View],
+    grid: VoxelGrid,
+    least_views: int,
+) -> np.ndarray:
+    """Return the voxels (nx, ny, nz) bool of the hull that views show on gaps; as `fit_masks`.
+
+    Parameters
+    ----------
+    hull : (nx, ny, nz) float32
+        The masks' hull, negative inside.
+    """
     places = np.flatnonzero(allowed)
     centres = voxel_places(grid, places)
     middle = np.append(centres[solid.reshape(-1)[places]].mean(axis=0) if solid.any() else centres.mean(axis=0), 1)
     covered = draw_voxels(solid, grid, views)
-    distances = np.full((len(views), len(places)), -_STEPS, np.int16)
     gaps = []
-    for rank, (name, view) in enumerate(views.items()):
-        mask = masks[name]
-        if not mask.any():
-            continue  # it does not show the object at all
+    for name, view in views.items():
+        gap = masks[name] & ~covered[name]
+        if not gap.any():
+            continue
         row, column = nearest_pixels(view, centres)
-        # world length of a pixel, per depth, in ramps of the hull's field
-        share = 1 / (view.camera.fx * grid.spacing * ramp)
-        outside = -depth_inside(mask | ~valid[name])
-        _measure(centres, view.cam_from_world[2], row, column, outside, share, distances[rank])
-        gap = mask & ~covered[name]
         footprint = max(1, int(np.ceil(view.camera.fx * grid.spacing / (view.cam_from_world[2] @ middle))))
         wide = cv2.morphologyEx(gap.astype(np.uint8), cv2.MORPH_OPEN, _disc(_RIM * footprint)) > 0
         voxels = _on(gap, row, column)
         gaps.append(_Gap(voxels, wide[row[voxels], column[voxels]]))
-    allowance = min(int(tolerance * len(views)), len(views) - 1)
-    distances.partition(len(views) - 1 - allowance, axis=0)
-    hull = distances[len(views) - 1 - allowance] / np.float32(_STEPS)
     near = ndimage.distance_transform_edt(~solid).reshape(-1)[places] <= _REACH
-    filled = _fill_gaps(gaps, hull < 0, near, least_views)
-    fitted, fills = sdf.copy(), np.zeros(grid.shape, bool)
-    values = fitted.reshape(-1)[places]
-    values[filled] = np.minimum(values[filled], hull[filled])
-    fitted.reshape(-1)[places] = np.maximum(values, hull)
-    fills.reshape(-1)[places] = filled
-    return fitted, fills
+    filled = np.zeros(grid.shape, bool)
+    filled.reshape(-1)[places] = _fill_gaps(gaps, hull.reshape(-1)[places] < 0, near, least_views)
+    return filled
 
 
 @dataclass(frozen=True)
@@ -111,17 +119,6 @@ def _fill_gaps(gaps: list[_Gap], allowed: np.ndarray, near: np.ndarray, least_vi
         any_gap[gap.voxels] += 1
         wide[gap.voxels] += gap.wide
     return allowed & (near & (any_gap >= least_views) | (wide >= least_views))
-
-
-@njit(cache=True)
-def _measure(centres, depth_from_world, row, column, outside, share, distances):
-    """Write the distance from the hull of one mask, in steps, of voxels that have a pixel."""
-    d = depth_from_world
-    for n in range(len(row)):
-        if row[n] >= 0:
-            depth = d[0] * centres[n, 0] + d[1] * centres[n, 1] + d[2] * centres[n, 2] + d[3]
-            level = outside[row[n], column[n]] * depth * share
-            distances[n] = np.rint(min(max(level, -1.0), 1.0) * _STEPS)
 
 
 @njit(cache=True)

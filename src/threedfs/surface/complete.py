@@ -1,0 +1,68 @@
+"""Confirmed depth completed by the hull of the masks: bounded by it, and filled where masks show more than depth."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.ndimage import gaussian_filter
+
+from threedfs.fusion.softmax import SoftMaximum
+from threedfs.hull.gaps import find_gaps
+from threedfs.types import View
+
+_GAP_BLUR = 1.0
+"""Standard deviation, voxels, by which trust in the hull spreads around a gap, so that no edge is left there."""
+_GAP_PEAK = 1.5
+"""What that trust is multiplied by after it was blurred: inside of a gap a few voxels wide it is full again."""
+
+
+@dataclass(frozen=True)
+class HullRule:
+    """What the hull of the masks counts against depth; `SurfaceParams` says more of each value."""
+
+    hull_trust: float
+    hull_yield: float
+    gap_views: int
+
+
+def complete_depth(
+    fused: SoftMaximum,
+    hull: np.ndarray,
+    bound: np.ndarray,
+    confirmed: float,
+    above: np.ndarray,
+    masks: Mapping[str, np.ndarray],
+    views: Mapping[str, View],
+    rule: HullRule,
+) -> np.ndarray:
+    """Return the field (nx, ny, nz) float32 in [-1, 1] that agrees with depth and masks, negative inside the object.
+
+    Not in the paper. The hull votes everywhere, the less, the more of the object's depth is confirmed: what confirms
+    depth on one side of a thing hints at what it is worth on the others. Where masks then show more than is solid, it
+    votes once more, as much as depth that is trusted fully; and what is missing still is the hull's.
+
+    Parameters
+    ----------
+    fused : SoftMaximum
+        Holds the votes of all views' depth; gets those of the hull.
+    hull, bound : (nx, ny, nz) float32
+        The hull that is weighed, and the one that nothing leaves (`measure_hull`).
+    confirmed : float
+        Mean trust in the object's depth, in [0, 1].
+    above : (nx, ny, nz) bool
+        Voxels above the support plane, which may be filled.
+    masks : mapping of str to (H, W) bool
+    views : mapping of str to View
+    rule : HullRule
+    """
+
+    def gaps_of(field):
+        return find_gaps((field < 0) & above, bound, above, masks, views, fused.grid, rule.gap_views)
+
+    fused.add_field(hull, max(0.0, rule.hull_trust - rule.hull_yield * confirmed))
+    gaps = gaps_of(np.maximum(fused.result()[0], bound))
+    fused.add_field(hull, np.clip(_GAP_PEAK * gaussian_filter(gaps.astype(np.float64), _GAP_BLUR), 0, 1))
+    field = np.maximum(fused.result()[0], bound)
+    return np.where(gaps_of(field), np.minimum(field, bound), field)
