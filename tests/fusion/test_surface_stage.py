@@ -86,7 +86,7 @@ def work(folder, **changes):
         masks=folder / "masks",
         method="surface",
         fusion=vars(fusion),
-        params=SurfaceParams(**changes),
+        params=SurfaceParams(**({"longest_side": SIDE} | changes)),
         job=Job(Progress("test"), {"provenance": "test"}),
     )
     mesh = trimesh.load(folder / "mesh.ply", process=True)
@@ -126,7 +126,9 @@ def test_right_depth_gives_the_sphere(right, table):
 def test_depth_that_nothing_confirms_carves_no_pit(pitted, table):
     """Property: the hull closes what wrong depth opens; with all depth believed the pit is there."""
     closed = deepest(work(pitted, matched_reach=0.01)[0], table)
-    believed = deepest(work(pitted, agree_from=0.0, agree_full=1.0, hull_trust=0.0, gap_views=99)[0], table)
+    believed = deepest(
+        work(pitted, agree_from=0.0, agree_full=1.0, hull_trust=0.0, sure_hull_trust=0.0, gap_views=99)[0], table
+    )
     assert closed < 0.1 < 0.2 < believed
 
 
@@ -137,6 +139,7 @@ def test_the_same_bytes_twice(pitted):
 @pytest.mark.parametrize(
     "change",
     [
+        {"longest_side": 50},
         {"agree_from": 0.0},
         {"agree_full": 20.0, "matched_full": 1.0},
         {"matched": 0.5},
@@ -146,8 +149,12 @@ def test_the_same_bytes_twice(pitted):
         {"hull_trust": 0.9},
         {"hull_tolerance": 0.4},
         {"bound_tolerance": 0.0},
+        {"closing": 0.0},
         {"medians": 0},
-        {"hull_yield": 0.0},
+        {"sure_from": 0.0},
+        {"sure_full": 0.65},
+        {"sure_hull_trust": 0.9},
+        {"sure_clip_share": 0.9},
         {"gap_views": 99},
         {"smoothing_steps": 0},
         {"smoothing_contrast": 5.0},
@@ -182,7 +189,7 @@ def test_what_masks_show_and_no_depth_has_is_filled(table, tmp_path):
     write_scene(tmp_path, table, lost=True)
     volumes, ious = [], []
     for change in ({"gap_views": 99}, {}):
-        mesh, _ = work(tmp_path, hull_trust=0.0, hull_yield=0.0, **change)
+        mesh, _ = work(tmp_path, hull_trust=0.0, sure_hull_trust=0.0, **change)
         volumes.append(mesh.volume)
         ious.append(agreement(tmp_path, table))
     assert ious[0] < 0.8 and ious[1] > 0.93

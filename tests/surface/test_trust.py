@@ -3,9 +3,17 @@
 import numpy as np
 import pytest
 
-from threedfs.surface.trust import TrustRule, trust_depth
+from threedfs.surface.trust import TrustRule, rate_sureness, trust_depth
 
-RULE = TrustRule(agree_from=2.0, agree_full=5.0, matched=0.01, matched_from=0.1, matched_full=0.4)
+RULE = TrustRule(
+    agree_from=2.0,
+    agree_full=5.0,
+    matched=0.01,
+    matched_from=0.1,
+    matched_full=0.4,
+    sure_from=0.5,
+    sure_full=0.9,
+)
 SHAPE = (40, 60)
 INSIDE = np.ones(SHAPE, bool)
 
@@ -43,3 +51,13 @@ def test_a_wider_neighbourhood_reaches_farther():
     photometric[:, :30] = 0.5
     near, far = (rate(1, photometric=photometric, reach=reach)[20, 42] for reach in (3.0, 15.0))
     assert near == 0 < far
+
+
+def test_sureness_rises_with_the_mean_trust_in_the_masks():
+    """Exact: half way between the two ends; what no mask holds does not count, nor do empty masks."""
+    left, none = np.zeros((4, 6), bool), np.zeros((4, 6), bool)
+    left[:, :3] = True
+    trust = np.where(left, 0.7, 0.0).astype(np.float32)
+    assert rate_sureness([trust, trust], [left, none], RULE) == pytest.approx(0.5, abs=1e-6)
+    assert rate_sureness([trust], [~none], RULE) == 0
+    assert rate_sureness([np.ones((4, 6), np.float32)], [left], RULE) == 1

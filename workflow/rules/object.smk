@@ -150,7 +150,7 @@ rule surface:
         "../../envs/threedfs.yaml"
     threads: THREADS
     resources:
-        mem_mb=memory_of("surface"),
+        mem_mb=memory_of("surface", grid="surface"),
     params:
         code=code_of("surface"),
         settings=settings_of("surface"),

@@ -11,6 +11,13 @@ from threedfs.params.field import parameter
 class SurfaceParams:
     """How the method surface weighs confirmed depth against the hull of the masks."""
 
+    longest_side: int = parameter(
+        200,
+        "voxels along the longest side of the box around the hull of the masks",
+        unit="voxel",
+        minimum=16,
+        maximum=1000,
+    )
     agree_from: float = parameter(
         2.0, "views that agree with a depth up to which it is not trusted for it", minimum=0.0
     )
@@ -41,16 +48,23 @@ class SurfaceParams:
         exclusive_minimum=0.0,
         maximum=1.0,
     )
+    sure_from: float = parameter(
+        0.6, "mean trust in the object's depth up to which the object is bare", minimum=0.0, maximum=1.0
+    )
+    sure_full: float = parameter(
+        0.85, "mean trust in the object's depth from which its depth is sure", minimum=0.0, maximum=1.0
+    )
     hull_trust: float = parameter(
-        0.65,
-        "trust that the hull of the masks counts as much as, against depth, where no depth is confirmed",
+        0.45,
+        "trust that the hull of the masks counts as much as, against depth, on a bare object",
         minimum=0.0,
         maximum=1.0,
     )
-    hull_yield: float = parameter(
-        0.4,
-        "what that trust is less where all of the object's depth is confirmed, in proportion to the share that is",
-        minimum=0.0,
+    sure_hull_trust: float = parameter(0.3, "the same on an object whose depth is sure", minimum=0.0, maximum=1.0)
+    sure_clip_share: float = parameter(
+        0.6,
+        "clip distance of an object whose depth is sure, as a share of that of fuse_object, which a bare one has",
+        exclusive_minimum=0.0,
         maximum=1.0,
     )
     hull_tolerance: float = parameter(
@@ -62,8 +76,14 @@ class SurfaceParams:
     gap_views: int = parameter(
         2, "views that show a voxel of the hull where nothing solid is before it is filled", minimum=1
     )
+    closing: float = parameter(
+        1.0,
+        "share by which pits and tunnels one or two voxels wide are closed on a bare object; none are on a sure one",
+        minimum=0.0,
+        maximum=1.0,
+    )
     medians: int = parameter(
-        2,
+        3,
         "times that the field becomes its median over a voxel and the 6 beside it: pits, spikes and handles go",
         minimum=0,
         maximum=10,

@@ -11,7 +11,8 @@ import numpy as np
 from threedfs.crops.place import measure_object
 from threedfs.errors import UserError
 from threedfs.fusion.fuse import VoteRule, limit_clip_distance, start_fusion
-from threedfs.hull.distance import measure_hull
+from threedfs.geometry.grid import cover_box
+from threedfs.hull.distance import enclose_hull, measure_hull
 from threedfs.io.consistency import read_consistency
 from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_depth_map
@@ -30,9 +31,14 @@ from threedfs.params.fuse_object import FuseObjectParams
 from threedfs.params.rules import make_rule
 from threedfs.params.schema import make_params
 from threedfs.params.surface import SurfaceParams
-from threedfs.surface.complete import HullRule, complete_depth
-from threedfs.surface.trust import TrustRule, trust_depth
+from threedfs.surface.complete import HullRule, close_pits, complete_depth
+from threedfs.surface.trust import TrustRule, rate_sureness, trust_depth
+from threedfs.types import Support, View, VoxelGrid
 
+_COARSE = 80
+"""Voxels along the longest side of the object's box, of the grid on which the hull is found first."""
+_MARGIN = 3.0
+"""Voxels of that grid around the hull."""
 _DEEPEST = -2.0
 """Voxels above the support plane from which the hull is measured."""
 
@@ -56,9 +62,9 @@ def run(
 ) -> None:
     """Read depth, what other views say of it, and the masks of the joint segmentation; write mesh and masks.
 
-    Not in the paper. Depth maps are fused once more on the object's grid, by the settings `fusion` of fuse_object, but
-    each pixel counts by how well it is confirmed, and the hull of the masks votes among them everywhere. So a depth
-    that nothing confirms carves nothing inside of the outline, and a hollow that photographs show is not filled.
+    Not in the paper. Depth maps are fused once more, on a grid around the hull of the masks, by the settings `fusion`
+    of fuse_object, but each pixel counts by how well it is confirmed, and the hull votes among them everywhere. So a
+    depth that nothing confirms carves nothing inside of the outline, and a hollow that photographs show is not filled.
 
     Raises
     ------
@@ -73,48 +79,63 @@ def run(
             "outline to go by: use fused_sdf."
         )
     place, trust = read_support(support), read_consistency(consistency)
-    height = height_above(place.plane, cut.grid)
+    valid = {name: images.valid_of(name) for name in views}
+    grid = _lay_grid(cut.masks, views, valid, place, params)
+    height = height_above(place.plane, grid)
     fused_as = make_params(FuseObjectParams, fusion)
+    paths = {path.name.removesuffix(".zarr.zip"): path for path in depth}
+    rule, corners, own = make_rule(TrustRule, params), place.box.corners(), {}
+    for name, view in views.items():
+        said, matched = trust.read(name), read_depth_map(paths[name]).confidence
+        length = read_object_pixels(keyframes, name) or measure_object([view], corners) or 0.0
+        reach = params.matched_reach * length
+        own[name] = trust_depth(said.agree, said.confidence, matched, cut.masks[name], reach, rule)
+    sureness = rate_sureness(own.values(), (cut.masks[name] for name in own), rule)
+    voxel = cut.grid.spacing  # of the object's grid: settings of fuse_object count in its voxels
+    share = 1 - sureness * (1 - params.sure_clip_share)
     clip = limit_clip_distance(
-        fused_as.clip_distance, place.figures["thickness"], fused_as.thickness_share, cut.grid.spacing
+        share * fused_as.clip_distance, place.figures["thickness"], share * fused_as.thickness_share, voxel
     )
     hull, bound = measure_hull(
         cut.masks,
         views,
-        {name: images.valid_of(name) for name in views},
-        cut.grid,
-        height > _DEEPEST * cut.grid.spacing,
-        ramp=clip / cut.grid.spacing,
+        valid,
+        grid,
+        height > _DEEPEST * grid.spacing,
+        ramp=clip / grid.spacing,
         tolerances=(params.hull_tolerance, params.bound_tolerance),
     )
     fused = start_fusion(
-        cut.grid,
+        grid,
         clip,
         make_rule(VoteRule, fused_as),
-        hidden_distance=fused_as.hidden_distance * cut.grid.spacing,
+        hidden_distance=share * fused_as.hidden_distance * voxel,
         threads=job.threads,
     )
-    paths = {path.name.removesuffix(".zarr.zip"): path for path in depth}
-    corners = place.box.corners()
-    rule, confirmed = make_rule(TrustRule, params), []
     for name, view in job.progress.track(views.items(), "keyframe", len(views)):
-        found, said = read_depth_map(paths[name]), trust.read(name)
-        reach = params.matched_reach * (read_object_pixels(keyframes, name) or measure_object([view], corners) or 0.0)
-        own = trust_depth(said.agree, said.confidence, found.confidence, cut.masks[name], reach, rule)
-        if cut.masks[name].any():
-            confirmed.append(float(own[cut.masks[name]].mean()))
-        fused.add(view, found.depth, own)
-    sdf = complete_depth(
-        fused, hull, bound, float(np.mean(confirmed)), height > 0, cut.masks, views, make_rule(HullRule, params)
-    )
-    alone = mask_field(sdf, np.ones(cut.grid.shape, bool), height, cut.grid.spacing, params.medians)
-    surface = smooth_mesh(extract_surface(alone, cut.grid), params.smoothing_steps, params.smoothing_contrast)
+        fused.add(view, read_depth_map(paths[name]).depth, own[name])
+    sdf = complete_depth(fused, hull, bound, sureness, height > 0, cut.masks, views, make_rule(HullRule, params))
+    sdf = close_pits(sdf, params.closing * (1 - sureness))
+    alone = mask_field(sdf, np.ones(grid.shape, bool), height, grid.spacing, params.medians)
+    surface = smooth_mesh(extract_surface(alone, grid), params.smoothing_steps, params.smoothing_contrast)
     write_mesh(mesh, surface)
-    job.progress.note(
-        f"{method}: {np.mean(confirmed):.0%} of the object's depth is confirmed; {len(surface.faces)} triangles"
-    )
+    job.progress.note(f"{method}: depth is sure by {sureness:.2f}; {len(surface.faces)} triangles")
     posed = read_poses(poses)
     whole = {view.name: view for view in posed.views}
     write_outlines(
         silhouettes, masks, surface, list(views.values()), whole, posed.distortion, images.source_shape, job.header
     )
+
+
+def _lay_grid(
+    masks: Mapping[str, np.ndarray],
+    views: Mapping[str, View],
+    valid: Mapping[str, np.ndarray],
+    place: Support,
+    params: SurfaceParams,
+) -> VoxelGrid:
+    """Return a grid around the hull of the masks alone: the object's box has room around it that needs no voxels."""
+    coarse = cover_box(place.box, _COARSE)
+    above = height_above(place.plane, coarse) > _DEEPEST * coarse.spacing
+    (hull,) = measure_hull(masks, views, valid, coarse, above, ramp=1.0, tolerances=(params.bound_tolerance,))
+    return cover_box(enclose_hull(hull, coarse, _MARGIN), params.longest_side)

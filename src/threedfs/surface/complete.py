@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter
+from scipy.ndimage import gaussian_filter, generate_binary_structure, grey_closing
 
 from threedfs.fusion.softmax import SoftMaximum
 from threedfs.hull.gaps import find_gaps
@@ -23,7 +23,7 @@ class HullRule:
     """What the hull of the masks counts against depth; `SurfaceParams` says more of each value."""
 
     hull_trust: float
-    hull_yield: float
+    sure_hull_trust: float
     gap_views: int
 
 
@@ -31,7 +31,7 @@ def complete_depth(
     fused: SoftMaximum,
     hull: np.ndarray,
     bound: np.ndarray,
-    confirmed: float,
+    sureness: float,
     above: np.ndarray,
     masks: Mapping[str, np.ndarray],
     views: Mapping[str, View],
@@ -39,9 +39,8 @@ def complete_depth(
 ) -> np.ndarray:
     """Return the field (nx, ny, nz) float32 in [-1, 1] that agrees with depth and masks, negative inside the object.
 
-    Not in the paper. The hull votes everywhere, the less, the more of the object's depth is confirmed: what confirms
-    depth on one side of a thing hints at what it is worth on the others. Where masks then show more than is solid, it
-    votes once more, as much as depth that is trusted fully; and what is missing still is the hull's.
+    Not in the paper. The hull votes everywhere, the less, the surer the object's depth is. Where masks then show more
+    than is solid, it votes once more, as much as depth that is trusted fully; and what is missing still is the hull's.
 
     Parameters
     ----------
@@ -49,8 +48,8 @@ def complete_depth(
         Holds the votes of all views' depth; gets those of the hull.
     hull, bound : (nx, ny, nz) float32
         The hull that is weighed, and the one that nothing leaves (`measure_hull`).
-    confirmed : float
-        Mean trust in the object's depth, in [0, 1].
+    sureness : float
+        Of the object's depth, in [0, 1] (`rate_sureness`).
     above : (nx, ny, nz) bool
         Voxels above the support plane, which may be filled.
     masks : mapping of str to (H, W) bool
@@ -61,8 +60,18 @@ def complete_depth(
     def gaps_of(field):
         return find_gaps((field < 0) & above, bound, above, masks, views, fused.grid, rule.gap_views)
 
-    fused.add_field(hull, max(0.0, rule.hull_trust - rule.hull_yield * confirmed))
+    fused.add_field(hull, (1 - sureness) * rule.hull_trust + sureness * rule.sure_hull_trust)
     gaps = gaps_of(np.maximum(fused.result()[0], bound))
     fused.add_field(hull, np.clip(_GAP_PEAK * gaussian_filter(gaps.astype(np.float64), _GAP_BLUR), 0, 1))
     field = np.maximum(fused.result()[0], bound)
     return np.where(gaps_of(field), np.minimum(field, bound), field)
+
+
+def close_pits(field: np.ndarray, share: float) -> np.ndarray:
+    """Return a field (nx, ny, nz) whose pits and tunnels one or two voxels wide are closed, by a share in [0, 1].
+
+    Not in the paper. A grey-scale closing of the solid, by a voxel and the 6 beside it.
+    """
+    beside = generate_binary_structure(3, 1)
+    closed = -grey_closing(-field, footprint=beside, mode="nearest")
+    return field + np.float32(share) * (closed - field)
