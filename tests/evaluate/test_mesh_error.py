@@ -6,7 +6,14 @@ import trimesh
 from scipy.spatial import cKDTree
 from scipy.spatial.transform import Rotation
 
-from threedfs.evaluate.mesh_error import bounding_diagonal, count_pieces, filled_share, is_closed, measure_mesh
+from threedfs.evaluate.mesh_error import (
+    bounding_diagonal,
+    count_pieces,
+    filled_share,
+    find_genus,
+    is_closed,
+    measure_mesh,
+)
 from threedfs.evaluate.surface import SurfaceDistance, sample_surface, triangle_distance
 from threedfs.types import Mesh
 
@@ -146,3 +153,34 @@ def test_the_filled_share_of_a_ball_is_pi_over_six_and_turns_with_its_faces():
     assert filled_share(ball) == pytest.approx(np.pi / 6, rel=0.01)
     assert filled_share(Mesh(ball.vertices + 7, ball.faces[:, ::-1])) == pytest.approx(-filled_share(ball))
     assert filled_share(ball) == pytest.approx(trimesh.Trimesh(ball.vertices, ball.faces).volume / 64, rel=1e-2)
+
+
+def test_far_share_and_normals():
+    """Exact: one of two equal balls lies far away; a tilted plate's normals are off by its tilt."""
+    truth = sphere()
+    aside = sphere().vertices + np.array([6.0, 0.0, 0.0])
+    both = Mesh(np.concatenate([truth.vertices, aside]), np.concatenate([truth.faces, truth.faces + len(aside)]))
+    error = measure(both, truth)
+    assert error.far_share == pytest.approx(0.5, abs=0.02)
+    assert measure(truth, truth).normal_error < 0.5 and measure(truth, truth).far_share == 0
+    plate = trimesh.creation.box((1.0, 1.0, 0.001))
+    turn = Rotation.from_euler("x", 7, degrees=True).as_matrix()
+    tilted = Mesh(np.asarray(plate.vertices) @ turn.T, np.asarray(plate.faces))
+    flat = Mesh(np.asarray(plate.vertices), np.asarray(plate.faces))
+    assert measure(tilted, flat).normal_error == pytest.approx(7, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    "made, genus",
+    [
+        (trimesh.creation.icosphere(subdivisions=2), 0),
+        (trimesh.creation.torus(1.0, 0.3), 1),
+        (trimesh.util.concatenate([trimesh.creation.torus(1.0, 0.3), trimesh.creation.box()]), 1),
+    ],
+    ids=["sphere", "torus", "torus and box"],
+)
+def test_genus(made, genus):
+    """Exact; vertices that are stored once for each face count once."""
+    mesh = Mesh(np.asarray(made.vertices), np.asarray(made.faces))
+    apart = Mesh(mesh.vertices[mesh.faces].reshape(-1, 3), np.arange(3 * len(mesh.faces)).reshape(-1, 3))
+    assert find_genus(mesh) == find_genus(apart) == genus

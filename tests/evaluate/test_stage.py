@@ -17,7 +17,7 @@ from threedfs.params.evaluate import EvaluateParams
 from threedfs.params.evaluate_reconstruction import EvaluateReconstructionParams
 from threedfs.types import Mesh
 
-SOUNDNESS = {"mesh_closed", "mesh_pieces", "mesh_filled"}
+SOUNDNESS = {"mesh_genus", "mesh_closed", "mesh_pieces", "mesh_filled"}
 
 
 def test_the_truth_scores_full_marks(finished):

@@ -122,7 +122,10 @@ def test_figures_of_all_kinds_come_where_they_belong():
         ("mug", "fused_sdf", "mesh_chamfer"): 0.55,
         ("mug", "fused_sdf", "mesh_f_score_0.5"): 0.61,
         ("mug", "fused_sdf", "mesh_f_score_1"): 0.81,
+        ("mug", "fused_sdf", "mesh_far_share"): 3.25,
+        ("mug", "fused_sdf", "mesh_normal_error"): 12.5,
         ("mug", "fused_sdf", "mesh_closed"): 1.0,
+        ("mug", "fused_sdf", "mesh_genus"): 2.0,
         ("mug", "fused_sdf", "mesh_pieces"): 1.0,
         ("mug", "fused_sdf", "mesh_filled"): 0.52,
         ("mug", "", "depth_rmse"): 0.0123,
@@ -134,8 +137,11 @@ def test_figures_of_all_kinds_come_where_they_belong():
     assert poses["mug", "centre, median, % of path"] == "0.250"
     assert poses["mug", "rotation, median, degrees"] == "0.125" and poses["mug", "rotation, largest"] == "-"
     (mesh,) = mesh_tables(made, "toys")
-    assert mesh.rows[0] == ("mug", "0.500", "0.600", "0.550", "0.610", "0.810", "1", "1", "0.52")
-    assert mesh.header[-5:] == ("F-score at 0.5 %", "F-score at 1 %", "closed", "pieces", "filled")
+    measured = cells(mesh)
+    assert [measured["mug", f"F-score at {t} %"] for t in ("0.5", "1")] == ["0.610", "0.810"]
+    assert mesh.rows[0][1:4] == ("0.500", "0.600", "0.550")
+    assert mesh.rows[0][-6:] == ("3.2", "12.5", "1", "1", "2", "0.52")
+    assert mesh.header[-6:] == ("farther than 2 %, %", "normals, degrees", "closed", "pieces", "handles", "filled")
     depth = cells(depth_tables(made, "toys")[0])
     assert depth["mug", "within 10 %"] == "99.0" and depth["mug", "RMSE, unit of the truth"] == "0.0123"
 

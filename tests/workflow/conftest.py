@@ -163,7 +163,9 @@ def make_project(folder: Path) -> Project:
     shutil.copy(ROOT / "Snakefile", folder)
     for name, make in FILES.items():  # in step even when the committed ones are not, which is another test's matter
         # one method of few stages: what methods share has tests of its own
-        (folder / name).write_text(make().replace("methods: [sdf_2d3d_voxel, gc_2d3d_pixel]", "methods: [fused_sdf]"))
+        (folder / name).write_text(
+            make().replace("methods: [surface, gc_2d3d_pixel, sdf_2d3d_voxel]", "methods: [fused_sdf]")
+        )
     sample = folder / "resources" / "sample"
     (sample / "masks").mkdir(parents=True)
     for name in ("video.mp4", "cameras.json", "mesh.ply", "masks/000001.png"):

@@ -9,7 +9,7 @@ import numpy as np
 
 from threedfs.evaluate.cylinder import CylinderResidual
 from threedfs.evaluate.depth_error import DepthPairs, measure_depth, pool_pairs
-from threedfs.evaluate.mesh_error import MeshError, count_pieces, filled_share, is_closed
+from threedfs.evaluate.mesh_error import MeshError, count_pieces, filled_share, find_genus, is_closed
 from threedfs.evaluate.pose_error import PoseError
 from threedfs.types import Mesh
 
@@ -104,7 +104,7 @@ def reconstruction_figures(posed: int, unposed: int, quality: Mapping[str, float
 
 
 def mesh_figures(error: MeshError) -> list[Figure]:
-    """Return accuracy, completeness, Chamfer distance, and precision, recall and F-score at each threshold."""
+    """Return distances, precision, recall and F-score at each threshold, the share far away, and the normals' error."""
     diagonal = "% of diagonal"
     return [
         Figure("mesh_accuracy", 100 * error.accuracy, diagonal),
@@ -115,14 +115,18 @@ def mesh_figures(error: MeshError) -> list[Figure]:
             for agreement in error.agreement
             for name in ("precision", "recall", "f_score")
         ),
+        Figure("mesh_far_share", 100 * error.far_share, "%"),
+        Figure("mesh_normal_error", error.normal_error, "deg"),
     ]
 
 
 def soundness_figures(mesh: Mesh) -> list[Figure]:
-    """Return whether a mesh is closed, of how many pieces it is, and what share of its bounding box it fills."""
+    """Return whether a mesh is closed, its pieces and handles, and what share of its bounding box it fills."""
+    closed = is_closed(mesh)
     return [
-        Figure("mesh_closed", float(is_closed(mesh)), "1"),
+        Figure("mesh_closed", float(closed), "1"),
         Figure("mesh_pieces", float(count_pieces(mesh)), "pieces"),
+        *([Figure("mesh_genus", float(find_genus(mesh)), "handles")] if closed else []),
         Figure("mesh_filled", filled_share(mesh), "1"),
     ]
 

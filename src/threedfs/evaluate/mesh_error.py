@@ -7,9 +7,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from threedfs.evaluate.surface import SurfaceDistance, sample_surface
+from threedfs.evaluate.surface import SurfaceDistance, face_vectors, sample_surface
 from threedfs.object.extract import enclosed_volume, find_shells
 from threedfs.types import Mesh
+
+_FAR = 0.02
+"""Share of the diagonal beyond which a surface is no longer rough but elsewhere."""
 
 
 @dataclass(frozen=True)
@@ -49,11 +52,17 @@ class MeshError:
         Mean distance from the truth to the mesh.
     agreement : tuple of Agreement
         One for each threshold.
+    far_share : float
+        Share of the mesh's area that is farther than 2 % of the diagonal from the true surface.
+    normal_error : float
+        Median angle between the normals of the mesh and of the true surface where that is nearest, degrees.
     """
 
     accuracy: float
     completeness: float
     agreement: tuple[Agreement, ...]
+    far_share: float
+    normal_error: float
 
     @property
     def chamfer(self) -> float:
@@ -89,13 +98,26 @@ def measure_mesh(
     diagonal = bounding_diagonal(truth)
     mesh_points, mesh_face = sample_surface(mesh, count, generator)
     true_points, true_face = sample_surface(truth, count, generator)
-    to_truth = SurfaceDistance(truth, true_points, true_face)(mesh_points) / diagonal
+    apart, opposite = SurfaceDistance(truth, true_points, true_face).find(mesh_points)
+    to_truth = apart / diagonal
     to_mesh = SurfaceDistance(mesh, mesh_points, mesh_face)(true_points) / diagonal
     agreement = tuple(
         Agreement(threshold, float((to_truth <= threshold / 100).mean()), float((to_mesh <= threshold / 100).mean()))
         for threshold in thresholds
     )
-    return MeshError(float(to_truth.mean()), float(to_mesh.mean()), agreement)
+    angle = _angles(face_vectors(mesh)[mesh_face], face_vectors(truth)[opposite])
+    return MeshError(
+        float(to_truth.mean()),
+        float(to_mesh.mean()),
+        agreement,
+        float((to_truth > _FAR).mean()),
+        float(np.median(angle)),
+    )
+
+
+def _angles(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """Return the angle (N,) between vectors (N, 3) of any length, degrees; exact for small ones, too."""
+    return np.degrees(np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), (a * b).sum(axis=1)))
 
 
 def is_closed(mesh: Mesh) -> bool:
@@ -120,6 +142,24 @@ def is_closed(mesh: Mesh) -> bool:
 def count_pieces(mesh: Mesh) -> int:
     """Return the number of pieces that share no vertex."""
     return len(np.unique(find_shells(mesh)[mesh.faces[:, 0]]))
+
+
+def find_genus(mesh: Mesh) -> int:
+    """Return the number of handles of a closed mesh, over all of its pieces; vertices at one place count as one.
+
+    Examples
+    --------
+    >>> corners = np.array([[0., 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    >>> find_genus(Mesh(corners, np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]])))
+    0
+    """
+    places, welded = np.unique(mesh.vertices, axis=0, return_inverse=True)
+    faces = welded.reshape(-1)[mesh.faces]
+    faces = faces[(faces != np.roll(faces, 1, axis=1)).all(axis=1)]
+    joined = Mesh(places, faces)
+    edges = np.sort(np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]]), axis=1)
+    characteristic = len(np.unique(faces)) - len(np.unique(edges, axis=0)) + len(faces)
+    return round(count_pieces(joined) - characteristic / 2)
 
 
 def filled_share(mesh: Mesh) -> float:

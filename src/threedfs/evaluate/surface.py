@@ -52,12 +52,19 @@ class SurfaceDistance:
 
     def __call__(self, points: np.ndarray, candidates: int = 8) -> np.ndarray:
         """Return the distance (M,) of points (M, 3)."""
+        return self.find(points, candidates)[0]
+
+    def find(self, points: np.ndarray, candidates: int = 8) -> tuple[np.ndarray, np.ndarray]:
+        """Return the distance (M,) of points (M, 3), and the triangle (M,) int64 that is nearest to each."""
         candidates = min(candidates, len(self._face))
         _, nearest = self._tree.query(points, k=list(range(1, candidates + 1)))
-        distance = np.full(len(points), np.inf)
+        distance, face = np.full(len(points), np.inf), np.zeros(len(points), np.int64)
         for column in nearest.T:
-            distance = np.minimum(distance, triangle_distance(points, self._corners[self._face[column]]))
-        return distance
+            triangle = self._face[column]
+            apart = triangle_distance(points, self._corners[triangle])
+            face = np.where(apart < distance, triangle, face)
+            distance = np.minimum(distance, apart)
+        return distance, face
 
 
 def triangle_distance(points: np.ndarray, corners: np.ndarray) -> np.ndarray:

@@ -55,8 +55,11 @@ def mesh_tables(scores: Scores, dataset: str) -> list[Table]:
             Column("completeness", "mesh_completeness", method=method),
             Column("Chamfer", "mesh_chamfer", method=method),
             *(Column(f"F-score at {name.rpartition('_')[2]} %", name, method=method) for name in agreements),
+            Column("farther than 2 %, %", "mesh_far_share", ".1f", method=method),
+            Column("normals, degrees", "mesh_normal_error", ".1f", method=method),
             Column("closed", "mesh_closed", ".0f", method=method),
             Column("pieces", "mesh_pieces", ".0f", method=method),
+            Column("handles", "mesh_genus", ".0f", method=method),
             Column("filled", "mesh_filled", ".2f", method=method),
         ]
         tables += _measured(scores, dataset, columns, f"Meshes by {method}, {dataset}")

@@ -43,7 +43,7 @@ skip_absent: false
 
 # How the object is made: fused_sdf, deformed_sdf, volumetric_gc, gc_2d, gc_2d3d_pixel, gc_2d3d_voxel, gc_select,
 # sdf_2d3d_voxel, surface, tsdf, soft_maximum, hard_maximum, poisson.
-methods: [sdf_2d3d_voxel, gc_2d3d_pixel]
+methods: [surface, gc_2d3d_pixel, sdf_2d3d_voxel]
 
 # The joint segmentation with other settings, beside the configured one: tables tell what each changes.
 #   no_table: {segment: {table: false}}

@@ -15,7 +15,7 @@ class EvaluateParams:
         50000, "points drawn on each surface to compare meshes, or to fit a cylinder", minimum=1000, maximum=10000000
     )
     mesh_thresholds: tuple[float, ...] = parameter(
-        (0.5, 1.0),
+        (0.25, 0.5, 1.0),
         "distances at which precision, recall and F-score of a mesh are taken",
         unit="% of the true bounding box's diagonal",
         exclusive_minimum=0.0,

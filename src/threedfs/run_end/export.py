@@ -2,7 +2,7 @@
 
     python -m threedfs.run_end.export results/my 95 my.stl [METHOD]
 
-The format is that of the file's ending: stl, ply, obj or glb. METHOD is sdf_2d3d_voxel where none is given.
+The format is that of the file's ending: stl, ply, obj or glb. METHOD is surface where none is given.
 """
 
 from __future__ import annotations
@@ -11,15 +11,15 @@ import sys
 from pathlib import Path
 
 from threedfs.errors import UserError
-from threedfs.io.meshes import read_mesh, write_mesh
+from threedfs.io.colored_meshes import read_colored_mesh, write_colored_mesh
 from threedfs.io.volumes import read_support
 from threedfs.object.stand import stand_up
 
 _FORMATS = (".stl", ".ply", ".obj", ".glb")
 
 
-def export(sequence: Path, height: str, file: Path, method: str = "sdf_2d3d_voxel") -> None:
-    """Write a sequence's mesh with its support plane at z = 0.
+def export(sequence: Path, height: str, file: Path, method: str = "surface") -> None:
+    """Write a sequence's mesh, with its colours if it has any, with its support plane at z = 0.
 
     Parameters
     ----------
@@ -49,7 +49,9 @@ def export(sequence: Path, height: str, file: Path, method: str = "sdf_2d3d_voxe
         raise UserError(
             f"{path}: expected the mesh of a run, found none; correct {sequence}, or run the sequence first."
         )
-    write_mesh(file, stand_up(read_mesh(path), read_support(sequence / "07_fusion" / "support.json").plane, size))
+    mesh, colors = read_colored_mesh(path)
+    plane = read_support(sequence / "03_scene" / "support.json").plane
+    write_colored_mesh(file, stand_up(mesh, plane, size), colors)
 
 
 if __name__ == "__main__":

@@ -13,11 +13,11 @@ from threedfs.errors import UserError
 from threedfs.fusion.fuse import VoteRule, limit_clip_distance, start_fusion
 from threedfs.geometry.grid import cover_box
 from threedfs.hull.distance import enclose_hull, measure_hull
+from threedfs.io.colored_meshes import write_colored_mesh
 from threedfs.io.consistency import read_consistency
 from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_depth_map
 from threedfs.io.keyframes import read_keyframes, read_object_pixels
-from threedfs.io.meshes import write_mesh
 from threedfs.io.outlines import write_outlines
 from threedfs.io.poses import read_poses
 from threedfs.io.segmentation import read_segmentation
@@ -27,6 +27,7 @@ from threedfs.locate.height import height_above
 from threedfs.object.extract import extract_surface
 from threedfs.object.field import mask_field
 from threedfs.object.smooth import smooth_mesh
+from threedfs.paint.vertices import color_vertices
 from threedfs.params.fuse_object import FuseObjectParams
 from threedfs.params.rules import make_rule
 from threedfs.params.schema import make_params
@@ -118,13 +119,12 @@ def run(
     sdf = close_pits(sdf, params.closing * (1 - sureness))
     alone = mask_field(sdf, np.ones(grid.shape, bool), height, grid.spacing, params.medians)
     surface = smooth_mesh(extract_surface(alone, grid), params.smoothing_steps, params.smoothing_contrast)
-    write_mesh(mesh, surface)
+    seen_by = list(views.values())
+    write_colored_mesh(mesh, surface, color_vertices(surface, seen_by, images.image, images.valid_of))
     job.progress.note(f"{method}: depth is sure by {sureness:.2f}; {len(surface.faces)} triangles")
     posed = read_poses(poses)
     whole = {view.name: view for view in posed.views}
-    write_outlines(
-        silhouettes, masks, surface, list(views.values()), whole, posed.distortion, images.source_shape, job.header
-    )
+    write_outlines(silhouettes, masks, surface, seen_by, whole, posed.distortion, images.source_shape, job.header)
 
 
 def _lay_grid(

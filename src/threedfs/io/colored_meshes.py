@@ -1,0 +1,38 @@
+"""Meshes whose vertices have colours."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import trimesh
+
+from threedfs.io.atomic import atomic
+from threedfs.io.meshes import read_mesh
+from threedfs.types import Mesh
+
+
+def write_colored_mesh(path: Path, mesh: Mesh, colors: np.ndarray | None) -> None:
+    """Write a mesh with the colours (V, 3) uint8 RGB of its vertices in the format of the path's ending.
+
+    Binary PLY, OBJ and GLB have colours; STL cannot. Without colours as `threedfs.io.meshes.write_mesh`.
+    """
+    kind = path.suffix.lower().removeprefix(".")
+    settings = {"vertex_normal": False} if kind == "ply" else {}
+    made = trimesh.Trimesh(mesh.vertices, mesh.faces, vertex_colors=colors, process=False)
+    data = made.export(file_type=kind, **settings)
+    with atomic(path) as temporary:
+        temporary.write_bytes(data.encode() if isinstance(data, str) else data)
+
+
+def read_colored_mesh(path: Path) -> tuple[Mesh, np.ndarray | None]:
+    """Read a mesh and the colours (V, 3) uint8 RGB of its vertices, None where it has none.
+
+    Raises
+    ------
+    UserError
+        As `threedfs.io.meshes.read_mesh`.
+    """
+    mesh = read_mesh(path)
+    visual = trimesh.load(path, force="mesh", process=False).visual
+    return mesh, np.asarray(visual.vertex_colors)[:, :3] if visual.kind == "vertex" else None
