@@ -62,7 +62,7 @@ class SurfaceParams:
     )
     sure_hull_trust: float = parameter(0.3, "the same on an object whose depth is sure", minimum=0.0, maximum=1.0)
     sure_clip_share: float = parameter(
-        0.6,
+        0.7,
         "clip distance of an object whose depth is sure, as a share of that of fuse_object, which a bare one has",
         exclusive_minimum=0.0,
         maximum=1.0,
