@@ -149,6 +149,7 @@ def test_the_same_bytes_twice(pitted):
         {"hull_trust": 0.9},
         {"hull_tolerance": 0.4},
         {"bound_tolerance": 0.0},
+        {"gap_tolerance": 0.0},
         {"closing": 0.0},
         {"medians": 0},
         {"sure_from": 0.0},

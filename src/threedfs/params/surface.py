@@ -71,7 +71,13 @@ class SurfaceParams:
         0.05, "share of the masks that may be wrong in the hull that is weighed", minimum=0.0, maximum=1.0
     )
     bound_tolerance: float = parameter(
-        0.2, "share of the masks that may be wrong in the hull that nothing leaves", minimum=0.0, maximum=1.0
+        0.15,
+        "share of the masks that may be wrong in the hull that nothing leaves but what fills gaps",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    gap_tolerance: float = parameter(
+        0.2, "share of the masks that may be wrong in the hull that fills gaps", minimum=0.0, maximum=1.0
     )
     gap_views: int = parameter(
         2, "views that show a voxel of the hull where nothing solid is before it is filled", minimum=1

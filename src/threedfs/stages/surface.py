@@ -97,14 +97,14 @@ def run(
     clip = limit_clip_distance(
         share * fused_as.clip_distance, place.figures["thickness"], share * fused_as.thickness_share, voxel
     )
-    hull, bound = measure_hull(
+    hulls = measure_hull(
         cut.masks,
         views,
         valid,
         grid,
         height > _DEEPEST * grid.spacing,
         ramp=clip / grid.spacing,
-        tolerances=(params.hull_tolerance, params.bound_tolerance),
+        tolerances=(params.hull_tolerance, params.bound_tolerance, params.gap_tolerance),
     )
     fused = start_fusion(
         grid,
@@ -115,7 +115,9 @@ def run(
     )
     for name, view in job.progress.track(views.items(), "keyframe", len(views)):
         fused.add(view, read_depth_map(paths[name]).depth, own[name])
-    sdf = complete_depth(fused, hull, bound, sureness, height > 0, cut.masks, views, make_rule(HullRule, params))
+    sdf = complete_depth(
+        fused, hull, bound, filler, sureness, height > 0, cut.masks, views, make_rule(HullRule, params)
+    )
     sdf = close_pits(sdf, params.closing * (1 - sureness))
     alone = mask_field(sdf, np.ones(grid.shape, bool), height, grid.spacing, params.medians)
     surface = smooth_mesh(extract_surface(alone, grid), params.smoothing_steps, params.smoothing_contrast)
@@ -137,5 +139,5 @@ def _lay_grid(
     """Return a grid around the hull of the masks alone: the object's box has room around it that needs no voxels."""
     coarse = cover_box(place.box, _COARSE)
     above = height_above(place.plane, coarse) > _DEEPEST * coarse.spacing
-    (hull,) = measure_hull(masks, views, valid, coarse, above, ramp=1.0, tolerances=(params.bound_tolerance,))
+    (hull,) = measure_hull(masks, views, valid, coarse, above, ramp=1.0, tolerances=(params.gap_tolerance,))
     return cover_box(enclose_hull(hull, coarse, _MARGIN), params.longest_side)

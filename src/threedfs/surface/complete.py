@@ -31,6 +31,7 @@ def complete_depth(
     fused: SoftMaximum,
     hull: np.ndarray,
     bound: np.ndarray,
+    filler: np.ndarray,
     sureness: float,
     above: np.ndarray,
     masks: Mapping[str, np.ndarray],
@@ -46,8 +47,9 @@ def complete_depth(
     ----------
     fused : SoftMaximum
         Holds the votes of all views' depth; gets those of the hull.
-    hull, bound : (nx, ny, nz) float32
-        The hull that is weighed, and the one that nothing leaves (`measure_hull`).
+    hull, bound, filler : (nx, ny, nz) float32
+        The hull that is weighed, the one that nothing leaves but what fills gaps, and the one that fills them
+        (`measure_hull`, by more and more masks that may be wrong).
     sureness : float
         Of the object's depth, in [0, 1] (`rate_sureness`).
     above : (nx, ny, nz) bool
@@ -58,13 +60,13 @@ def complete_depth(
     """
 
     def gaps_of(field):
-        return find_gaps((field < 0) & above, bound, above, masks, views, fused.grid, rule.gap_views)
+        return find_gaps((field < 0) & above, filler, above, masks, views, fused.grid, rule.gap_views)
 
     fused.add_field(hull, (1 - sureness) * rule.hull_trust + sureness * rule.sure_hull_trust)
     gaps = gaps_of(np.maximum(fused.result()[0], bound))
     fused.add_field(hull, np.clip(_GAP_PEAK * gaussian_filter(gaps.astype(np.float64), _GAP_BLUR), 0, 1))
     field = np.maximum(fused.result()[0], bound)
-    return np.where(gaps_of(field), np.minimum(field, bound), field)
+    return np.where(gaps_of(field), np.minimum(field, filler), field)
 
 
 def close_pits(field: np.ndarray, share: float) -> np.ndarray:
