@@ -115,9 +115,7 @@ def run(
     )
     for name, view in job.progress.track(views.items(), "keyframe", len(views)):
         fused.add(view, read_depth_map(paths[name]).depth, own[name])
-    sdf = complete_depth(
-        fused, hull, bound, filler, sureness, height > 0, cut.masks, views, make_rule(HullRule, params)
-    )
+    sdf = complete_depth(fused, *hulls, sureness, height > 0, cut.masks, views, make_rule(HullRule, params))
     sdf = close_pits(sdf, params.closing * (1 - sureness))
     alone = mask_field(sdf, np.ones(grid.shape, bool), height, grid.spacing, params.medians)
     surface = smooth_mesh(extract_surface(alone, grid), params.smoothing_steps, params.smoothing_contrast)
