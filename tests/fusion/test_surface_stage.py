@@ -1,5 +1,7 @@
 """Contract: the stage surface on a sphere on a table, some of whose depth is wrong and not confirmed."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
@@ -13,7 +15,7 @@ from threedfs.io.depth_maps import DepthMap, write_depth_map
 from threedfs.io.images import read_mask
 from threedfs.io.keyframes import write_keyframes
 from threedfs.io.poses import Poses, write_poses
-from threedfs.io.segmentation import Segmentation, write_segmentation
+from threedfs.io.segmentation import Segmentation, read_segmentation, write_segmentation
 from threedfs.io.volumes import write_support
 from threedfs.job import Job
 from threedfs.params.fuse_object import FuseObjectParams
@@ -195,3 +197,18 @@ def test_what_masks_show_and_no_depth_has_is_filled(table, tmp_path):
         ious.append(agreement(tmp_path, table))
     assert ious[0] < 0.8 and ious[1] > 0.93
     assert volumes[0] < 0.7 * volumes[1]
+
+
+def test_masks_that_contradict_each_other_are_refused(table, tmp_path):
+    """Each view shows the object at another side of the sphere, so that no place is inside of all masks."""
+    write_scene(tmp_path, table)
+    cut = read_segmentation(tmp_path / "labels.zarr.zip")
+    corner = np.zeros(next(iter(cut.masks.values())).shape, bool)
+    masks = {}
+    for rank, name in enumerate(sorted(cut.masks)):
+        masks[name] = corner.copy()
+        masks[name][(slice(0, 6), slice(-6, None))[rank % 2], (slice(0, 6), slice(-6, None))[rank // 2 % 2]] = True
+    write_segmentation(tmp_path / "labels.zarr.zip", replace(cut, masks=masks), {})
+    with pytest.raises(UserError, match="masks that agree on where the object is"):
+        work(tmp_path, bound_tolerance=0.0, gap_tolerance=0.0)
+    assert not (tmp_path / "mesh.ply").exists()

@@ -58,12 +58,19 @@ def test_each_half_has_its_colour(images):
     assert colors.sum(axis=1).min() > 200
 
 
+@pytest.mark.parametrize("color", [(255, 31, 201), (0, 1, 254)])
+def test_every_value_comes_back_as_it_was(images, color):
+    """Exact: white, black and odd values, by an odd and an even number of views."""
+    plain = {name: np.full_like(image, color) for name, image in images.items()}
+    assert (paint(ball(), plain) == color).all()
+
+
 def test_a_highlight_in_few_views_does_not_count(images):
     mesh = ball()
     shining = dict(images)
     shining[VIEWS[0].name] = np.full_like(images[VIEWS[0].name], SHINE[0])
     changed = (paint(mesh, shining) == SHINE).all(axis=1)
-    assert changed.mean() < 0.01
+    assert changed.mean() < 0.03  # those that it alone sees
 
 
 def test_what_is_hidden_is_not_painted_by_what_hides_it(images):

@@ -38,11 +38,12 @@ def measure_hull(
     ramp : float
         Distance at which the field is 1, voxels.
     tolerances : sequence of float
-        Shares of the views.
+        Shares of the views whose masks show something.
     """
     places = np.flatnonzero(allowed)
     centres = voxel_places(grid, places)
-    ranks = [min(int(share * len(views)), len(views) - 1) for share in tolerances]
+    count = sum(masks[name].any() for name in views)
+    ranks = [min(int(share * count), max(count - 1, 0)) for share in tolerances]
     largest = np.full((max(ranks) + 1, len(places)), -1, np.float32)
     for name, view in views.items():
         if not masks[name].any():

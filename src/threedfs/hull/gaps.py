@@ -86,7 +86,11 @@ def find_gaps(
     """
     places = np.flatnonzero(allowed)
     centres = voxel_places(grid, places)
-    middle = np.append(centres[solid.reshape(-1)[places]].mean(axis=0) if solid.any() else centres.mean(axis=0), 1)
+    filled = np.zeros(grid.shape, bool)
+    if not len(places):
+        return filled
+    own = centres[solid.reshape(-1)[places]]
+    middle = np.append((own if len(own) else centres).mean(axis=0), 1)
     covered = draw_voxels(solid, grid, views)
     gaps = []
     for name, view in views.items():
@@ -98,8 +102,8 @@ def find_gaps(
         wide = cv2.morphologyEx(gap.astype(np.uint8), cv2.MORPH_OPEN, _disc(_RIM * footprint)) > 0
         voxels = _on(gap, row, column)
         gaps.append(_Gap(voxels, wide[row[voxels], column[voxels]]))
-    near = ndimage.distance_transform_edt(~solid).reshape(-1)[places] <= _REACH
-    filled = np.zeros(grid.shape, bool)
+    apart = ndimage.distance_transform_edt(~solid) if solid.any() else np.full(grid.shape, np.inf)
+    near = apart.reshape(-1)[places] <= _REACH
     filled.reshape(-1)[places] = _fill_gaps(gaps, hull.reshape(-1)[places] < 0, near, least_views)
     return filled
 

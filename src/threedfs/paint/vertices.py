@@ -25,7 +25,7 @@ def color_vertices(
     """Return the colour (V, 3) uint8 of each vertex: the median over the views that see it, in each channel.
 
     Not in the paper. A median, as a highlight or an outline a pixel aside is in few views. A vertex that no view sees
-    has the mean colour of the nearest ones along the mesh that are seen; if none is seen, all are grey.
+    has the mean colour of the nearest ones along the mesh that are seen; a piece of which none is seen is grey.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def color_vertices(
     low, high = (
         np.take_along_axis(samples, rank[None, :, None], axis=0)[0] for rank in (middle // 2, (middle + 1) // 2)
     )
-    return _spread(mesh, (low + high + 1) / 2, count > 0)
+    return _spread(mesh, (low + high + 1) // 2, count > 0)
 
 
 def vertex_normals(mesh: Mesh) -> np.ndarray:
@@ -81,4 +81,4 @@ def _spread(mesh: Mesh, colors: np.ndarray, known: np.ndarray) -> np.ndarray:
             break
         colors[reached] = (beside @ colors)[reached] / weight[reached, None]
         known = known | reached
-    return np.where(known[:, None], np.rint(colors), 128).astype(np.uint8)
+    return np.where(known[:, None], np.clip(np.rint(colors), 0, 255), 128).astype(np.uint8)

@@ -47,7 +47,8 @@ def export(sequence: Path, height: str, file: Path, method: str = "surface") -> 
     path = sequence / "11_object" / method / "mesh.ply"
     if not path.is_file():
         raise UserError(
-            f"{path}: expected the mesh of a run, found none; correct {sequence}, or run the sequence first."
+            f"{path}: expected the mesh of a run, found none; correct {sequence}, run the sequence first, or "
+            "name a method that was run as METHOD."
         )
     mesh, colors = read_colored_mesh(path)
     plane = read_support(sequence / "03_scene" / "support.json").plane

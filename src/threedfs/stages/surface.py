@@ -70,7 +70,7 @@ def run(
     Raises
     ------
     UserError
-        If the segmentation has no masks of the object.
+        If the segmentation has no masks of the object, or they contradict each other everywhere.
     """
     cut, entries, images = read_segmentation(labels), read_keyframes(keyframes), read_crops(crops)
     views = {name: entry.view for name, entry in entries.items()}
@@ -95,7 +95,7 @@ def run(
     voxel = cut.grid.spacing  # of the object's grid: settings of fuse_object count in its voxels
     share = 1 - sureness * (1 - params.sure_clip_share)
     clip = limit_clip_distance(
-        share * fused_as.clip_distance, place.figures["thickness"], share * fused_as.thickness_share, voxel
+        max(2.0, share * fused_as.clip_distance), place.figures["thickness"], share * fused_as.thickness_share, voxel
     )
     hulls = measure_hull(
         cut.masks,
@@ -116,6 +116,11 @@ def run(
     for name, view in job.progress.track(views.items(), "keyframe", len(views)):
         fused.add(view, read_depth_map(paths[name]).depth, own[name])
     sdf = complete_depth(fused, *hulls, sureness, height > 0, cut.masks, views, make_rule(HullRule, params))
+    if not (sdf < 0).any():
+        raise UserError(
+            f"{labels}: expected masks that agree on where the object is, found that no place lies inside of enough of "
+            "them; raise surface.bound_tolerance and surface.gap_tolerance, or use fused_sdf."
+        )
     sdf = close_pits(sdf, params.closing * (1 - sureness))
     alone = mask_field(sdf, np.ones(grid.shape, bool), height, grid.spacing, params.medians)
     surface = smooth_mesh(extract_surface(alone, grid), params.smoothing_steps, params.smoothing_contrast)
@@ -137,5 +142,7 @@ def _lay_grid(
     """Return a grid around the hull of the masks alone: the object's box has room around it that needs no voxels."""
     coarse = cover_box(place.box, _COARSE)
     above = height_above(place.plane, coarse) > _DEEPEST * coarse.spacing
-    (hull,) = measure_hull(masks, views, valid, coarse, above, ramp=1.0, tolerances=(params.gap_tolerance,))
+    (hull,) = measure_hull(
+        masks, views, valid, coarse, above, ramp=1.0, tolerances=(max(params.bound_tolerance, params.gap_tolerance),)
+    )
     return cover_box(enclose_hull(hull, coarse, _MARGIN), params.longest_side)

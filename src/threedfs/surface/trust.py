@@ -75,5 +75,5 @@ def rate_sureness(trust: Iterable[np.ndarray], masks: Iterable[np.ndarray], rule
 
 
 def _rise(values: np.ndarray, start: float, full: float) -> np.ndarray:
-    """Return 0 up to `start`, 1 from `full` on, and a line between."""
-    return np.clip((values - start) / max(full - start, 1e-9), 0.0, 1.0)
+    """Return 1 from `full` on, 0 up to `start`, and a line between; `full` decides where they do not leave room."""
+    return np.where(np.asarray(values) >= full, 1.0, np.clip((values - start) / max(full - start, 1e-9), 0.0, 1.0))
