@@ -3,8 +3,8 @@
     python docs/make_pictures.py results/sample docs/pictures/sample.jpg [MASKS_OF MESH_OF]
 
 Four keyframes side by side; from top to bottom the crop with the mask's outline, the depth (near is red), the
-normals of the depth, and the mesh as the same camera sees it. Masks are those of gc_2d3d_pixel and the mesh that of
-sdf_2d3d_voxel where no methods are named.
+normals of the depth, the mesh as the same camera sees it, and the same in colour if it has colours. Masks are those of
+gc_2d3d_pixel and the mesh that of surface where no methods are named.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ import numpy as np
 
 from threedfs.geometry.projection import normals_from_depth, pixel_grid
 from threedfs.geometry.raycast import RayCaster
+from threedfs.io.colored_meshes import read_colored_mesh
 from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_depth_map
 from threedfs.io.keyframes import read_keyframes
-from threedfs.io.meshes import read_mesh
 from threedfs.io.volumes import read_silhouettes
 from threedfs.types import Keyframe, Mesh
 
@@ -52,8 +52,8 @@ def colour_normals(normals: np.ndarray) -> np.ndarray:
     return (np.nan_to_num(normals * [0.5, 0.5, -0.5] + 0.5) * 255).clip(0, 255).astype(np.uint8)
 
 
-def shade(mesh: Mesh, keyframe: Keyframe) -> np.ndarray:
-    """Render the mesh with one lamp beside the camera."""
+def render(mesh: Mesh, colors: np.ndarray | None, keyframe: Keyframe) -> list[np.ndarray]:
+    """Render the mesh with one lamp beside the camera; if its vertices have colours, in them without a lamp, too."""
     view, camera = keyframe.view, keyframe.view.camera
     u, v = pixel_grid(camera)
     rotation = view.cam_from_world[:3, :3]
@@ -65,7 +65,11 @@ def shade(mesh: Mesh, keyframe: Keyframe) -> np.ndarray:
     triangle = hits.triangle.reshape(u.shape)
     facing = (normals[np.maximum(triangle, 0)] @ rotation.T) @ np.array([-0.3, -0.4, -0.85])
     grey = np.where(triangle >= 0, np.clip(facing, 0.08, 1) * 255, 30).astype(np.uint8)
-    return np.repeat(grey[..., None], 3, axis=-1)
+    rendered = [np.repeat(grey[..., None], 3, axis=-1)]
+    if colors is not None:
+        shown = (colors[mesh.faces[hits.triangle]] * hits.weights[..., None]).sum(axis=1).reshape(*u.shape, 3)
+        rendered.append(np.where(triangle[..., None] >= 0, shown, 30).astype(np.uint8))
+    return rendered
 
 
 def fit(image: np.ndarray, width: int, height: int) -> np.ndarray:
@@ -79,12 +83,12 @@ def fit(image: np.ndarray, width: int, height: int) -> np.ndarray:
     return tile
 
 
-def main(results: Path, picture: Path, masks: str = "gc_2d3d_pixel", surface: str = "sdf_2d3d_voxel") -> None:
+def main(results: Path, picture: Path, masks: str = "gc_2d3d_pixel", surface: str = "surface") -> None:
     """Draw one picture: the masks of one method, the mesh of another."""
     crops = read_crops(results / "04_crops/crops.zarr.zip")
     keyframes = read_keyframes(results / "04_crops/keyframes.json")
     silhouettes = read_silhouettes(results / f"11_object/{masks}/silhouettes.zarr.zip")
-    mesh = read_mesh(results / f"11_object/{surface}/mesh.ply")
+    mesh, colors = read_colored_mesh(results / f"11_object/{surface}/mesh.ply")
     names = list(keyframes)
     width, columns = WIDTH // COLUMNS, []
     for name in names[:: max(1, len(names) // COLUMNS)][:COLUMNS]:
@@ -94,7 +98,7 @@ def main(results: Path, picture: Path, masks: str = "gc_2d3d_pixel", surface: st
             outline(crops.image(name), silhouettes[name]),
             colour_depth(depth, keyframe),
             colour_normals(normals_from_depth(keyframe.view.camera, depth)),
-            shade(mesh, keyframe),
+            *render(mesh, colors, keyframe),
         ]
         columns.append(np.vstack([fit(row, width, width) for row in rows]))
     cv2.imwrite(str(picture), np.hstack(columns)[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 88])
