@@ -55,6 +55,7 @@ def test_every_module_of_parameters_is_a_stage():
         "rendered",
         "rules",
         "sequences",
+        "smoothing",
     }
     assert modules - shared == set(declared_stages()) <= set(STAGES)
 

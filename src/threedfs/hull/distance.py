@@ -10,7 +10,7 @@ from numba import njit
 from threedfs.geometry.grid import voxel_places
 from threedfs.segment.lookup import nearest_pixels
 from threedfs.segment.outline import depth_inside
-from threedfs.types import Box, View, VoxelGrid
+from threedfs.types import View, VoxelGrid
 
 
 def measure_hull(
@@ -59,19 +59,6 @@ def measure_hull(
         field.reshape(-1)[places] = largest[rank]
         fields.append(field)
     return fields
-
-
-def enclose_hull(field: np.ndarray, grid: VoxelGrid, margin: float) -> Box:
-    """Return the box along a grid's axes around the voxels at which a hull's field (nx, ny, nz) is negative.
-
-    It reaches farther by `margin` voxels on each side, but not out of the grid; of an empty hull it is the whole grid.
-    """
-    index = np.argwhere(field < 0)
-    last = np.array(grid.shape) - 1
-    low, high = (index.min(axis=0), index.max(axis=0)) if len(index) else (np.zeros(3), last)
-    start = grid.axes @ grid.origin
-    ends = (np.maximum(low - margin, -0.5), np.minimum(high + margin, last + 0.5))
-    return Box(grid.axes, *(start + grid.spacing * end for end in ends))
 
 
 @njit(cache=True)

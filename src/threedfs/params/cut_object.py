@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from threedfs.params.field import parameter
+from threedfs.params.smoothing import SmoothingSettings
 
 
 @dataclass(frozen=True)
-class CutObjectParams:
+class CutObjectParams(SmoothingSettings):
     """How labelled voxels cut the field of the method sdf_2d3d_voxel; the others take the labels as they are."""
 
     dilation: int = parameter(
@@ -41,12 +42,4 @@ class CutObjectParams:
         "times that the field becomes its median over a voxel and the 6 beside it: pits and spikes go (paper: 0)",
         minimum=0,
         maximum=10,
-    )
-    smoothing_steps: int = parameter(3, "steps of the mesh's smoothing", equation="Sec. 3.5", minimum=0, maximum=100)
-    smoothing_contrast: float = parameter(
-        0.5,
-        "bend of the surface at a vertex from which it is kept as an edge",
-        unit="mean edge",
-        equation="Sec. 3.5",
-        exclusive_minimum=0.0,
     )

@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from threedfs.params.field import parameter
+from threedfs.params.smoothing import SmoothingSettings
 
 
 @dataclass(frozen=True)
-class SurfaceParams:
+class SurfaceParams(SmoothingSettings):
     """How the method surface weighs confirmed depth against the hull of the masks."""
 
     longest_side: int = parameter(
@@ -93,12 +94,4 @@ class SurfaceParams:
         "times that the field becomes its median over a voxel and the 6 beside it: pits, spikes and handles go",
         minimum=0,
         maximum=10,
-    )
-    smoothing_steps: int = parameter(3, "steps of the mesh's smoothing", equation="Sec. 3.5", minimum=0, maximum=100)
-    smoothing_contrast: float = parameter(
-        0.5,
-        "bend of the surface at a vertex from which it is kept as an edge",
-        unit="mean edge",
-        equation="Sec. 3.5",
-        exclusive_minimum=0.0,
     )

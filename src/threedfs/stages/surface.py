@@ -11,8 +11,8 @@ import numpy as np
 from threedfs.crops.place import measure_object
 from threedfs.errors import UserError
 from threedfs.fusion.fuse import VoteRule, limit_clip_distance, start_fusion
-from threedfs.geometry.grid import cover_box
-from threedfs.hull.distance import enclose_hull, measure_hull
+from threedfs.hull.distance import measure_hull
+from threedfs.hull.grid import lay_grid, may_be_hull
 from threedfs.io.colored_meshes import write_colored_mesh
 from threedfs.io.consistency import read_consistency
 from threedfs.io.crops import read_crops
@@ -34,14 +34,6 @@ from threedfs.params.schema import make_params
 from threedfs.params.surface import SurfaceParams
 from threedfs.surface.complete import HullRule, close_pits, complete_depth
 from threedfs.surface.trust import TrustRule, rate_sureness, trust_depth
-from threedfs.types import Support, View, VoxelGrid
-
-_COARSE = 80
-"""Voxels along the longest side of the object's box, of the grid on which the hull is found first."""
-_MARGIN = 3.0
-"""Voxels of that grid around the hull."""
-_DEEPEST = -2.0
-"""Voxels above the support plane from which the hull is measured."""
 
 
 def run(
@@ -81,7 +73,8 @@ def run(
         )
     place, trust = read_support(support), read_consistency(consistency)
     valid = {name: images.valid_of(name) for name in views}
-    grid = _lay_grid(cut.masks, views, valid, place, params)
+    loosest = max(params.bound_tolerance, params.gap_tolerance)
+    grid = lay_grid(place.box, place.plane, cut.masks, views, valid, loosest, params.longest_side)
     height = height_above(place.plane, grid)
     fused_as = make_params(FuseObjectParams, fusion)
     paths = {path.name.removesuffix(".zarr.zip"): path for path in depth}
@@ -102,7 +95,7 @@ def run(
         views,
         valid,
         grid,
-        height > _DEEPEST * grid.spacing,
+        may_be_hull(height, grid),
         ramp=clip / grid.spacing,
         tolerances=(params.hull_tolerance, params.bound_tolerance, params.gap_tolerance),
     )
@@ -125,24 +118,8 @@ def run(
     alone = mask_field(sdf, np.ones(grid.shape, bool), height, grid.spacing, params.medians)
     surface = smooth_mesh(extract_surface(alone, grid), params.smoothing_steps, params.smoothing_contrast)
     seen_by = list(views.values())
-    write_colored_mesh(mesh, surface, color_vertices(surface, seen_by, images.image, images.valid_of))
+    write_colored_mesh(mesh, surface, color_vertices(surface, seen_by, images.image, valid.__getitem__))
     job.progress.note(f"{method}: depth is sure by {sureness:.2f}; {len(surface.faces)} triangles")
     posed = read_poses(poses)
     whole = {view.name: view for view in posed.views}
     write_outlines(silhouettes, masks, surface, seen_by, whole, posed.distortion, images.source_shape, job.header)
-
-
-def _lay_grid(
-    masks: Mapping[str, np.ndarray],
-    views: Mapping[str, View],
-    valid: Mapping[str, np.ndarray],
-    place: Support,
-    params: SurfaceParams,
-) -> VoxelGrid:
-    """Return a grid around the hull of the masks alone: the object's box has room around it that needs no voxels."""
-    coarse = cover_box(place.box, _COARSE)
-    above = height_above(place.plane, coarse) > _DEEPEST * coarse.spacing
-    (hull,) = measure_hull(
-        masks, views, valid, coarse, above, ramp=1.0, tolerances=(max(params.bound_tolerance, params.gap_tolerance),)
-    )
-    return cover_box(enclose_hull(hull, coarse, _MARGIN), params.longest_side)
