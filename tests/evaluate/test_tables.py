@@ -128,6 +128,8 @@ def test_figures_of_all_kinds_come_where_they_belong():
         ("mug", "fused_sdf", "mesh_genus"): 2.0,
         ("mug", "fused_sdf", "mesh_pieces"): 1.0,
         ("mug", "fused_sdf", "mesh_filled"): 0.52,
+        ("mug", "fused_sdf", "photo_psnr"): 27.75,
+        ("mug", "fused_sdf", "photo_ssim"): 0.875,
         ("mug", "", "depth_rmse"): 0.0123,
         ("mug", "", "depth_within_10"): 99.0,
     }
@@ -140,8 +142,9 @@ def test_figures_of_all_kinds_come_where_they_belong():
     measured = cells(mesh)
     assert [measured["mug", f"F-score at {t} %"] for t in ("0.5", "1")] == ["0.610", "0.810"]
     assert mesh.rows[0][1:4] == ("0.500", "0.600", "0.550")
-    assert mesh.rows[0][-6:] == ("3.2", "12.5", "1", "1", "2", "0.52")
-    assert mesh.header[-6:] == ("farther than 2 %, %", "normals, degrees", "closed", "pieces", "handles", "filled")
+    assert mesh.rows[0][-8:] == ("3.2", "12.5", "1", "1", "2", "0.52", "27.8", "0.875")
+    sound = ("closed", "pieces", "handles", "filled")
+    assert mesh.header[-8:] == ("farther than 2 %, %", "normals, degrees", *sound, "photographs, PSNR, dB", "SSIM")
     depth = cells(depth_tables(made, "toys")[0])
     assert depth["mug", "within 10 %"] == "99.0" and depth["mug", "RMSE, unit of the truth"] == "0.0123"
 

@@ -2,13 +2,16 @@
 
 from dataclasses import replace
 
+import cv2
 import numpy as np
 import pytest
 import trimesh
+from sklearn.mixture import GaussianMixture
 
 from threedfs.errors import UserError
 from threedfs.geometry.projection import backproject_map
 from threedfs.geometry.similarity import Similarity
+from threedfs.io.appearance import write_appearance
 from threedfs.io.consistency import ConsistencyMap, write_consistency
 from threedfs.io.crops import Crop, write_crops
 from threedfs.io.depth_maps import DepthMap, write_depth_map
@@ -19,8 +22,11 @@ from threedfs.io.segmentation import Segmentation, read_segmentation, write_segm
 from threedfs.io.volumes import write_support
 from threedfs.job import Job
 from threedfs.params.fuse_object import FuseObjectParams
+from threedfs.params.segment import SegmentParams
 from threedfs.params.surface import SurfaceParams
 from threedfs.progress import Progress
+from threedfs.segment.appearance import Appearance
+from threedfs.segment.color_model import ColorModel, lab_from_rgb
 from threedfs.stages import surface
 from threedfs.types import Box, Keyframe, Plane, Support, VoxelGrid
 
@@ -29,6 +35,26 @@ BEHIND = 1.12
 """Depth in a pit over the true depth."""
 FAR_BEHIND = 1.6
 """The same where a side is lost: depth of what lies beyond it."""
+
+
+RED, GREY = (190, 40, 30), (120, 120, 125)
+
+
+def photograph(shown):
+    """Return the sphere in red on grey, with noise."""
+    noise = np.random.default_rng(3).normal(0, 6, (*shown.shape, 3))
+    return np.clip(np.where(shown[..., None], RED, GREY) + noise, 0, 255).astype(np.uint8)
+
+
+def learn_colors():
+    """Return the appearance that a segmentation would have learnt."""
+    rng = np.random.default_rng(5)
+
+    def fit(color):
+        rgb = np.clip(rng.normal(color, 6, (500, 3)), 0, 255).astype(np.uint8)
+        return GaussianMixture(2, reg_covar=1.0, random_state=0).fit(lab_from_rgb(rgb).astype(np.float64))
+
+    return Appearance(ColorModel(fit(RED), fit(GREY)), None)
 
 
 def shows_sphere(table, view, depth):
@@ -41,10 +67,11 @@ def write_scene(folder, table, *, pit=False, lost=False, empty=False):
 
     With a pit, one side of the sphere is bare, and its depth too far away; with that side lost, all views agree on it.
     """
-    views, maps, masks = table.views, {}, {}
+    views, maps, masks, photos = table.views, {}, {}, {}
     for rank, view in enumerate(views):
         depth = table.depth(view)
         masks[view.name] = shows_sphere(table, view, depth) & (not empty)
+        photos[view.name] = photograph(shows_sphere(table, view, depth))
         points = backproject_map(view, depth)
         bare = masks[view.name] & (points[..., 0] > table.centre[0] + 0.4 * table.radius) & (pit or lost)
         depth = np.where(bare, (FAR_BEHIND if lost else BEHIND) * depth, depth).astype(np.float32)
@@ -66,10 +93,9 @@ def write_scene(folder, table, *, pit=False, lost=False, empty=False):
     write_support(folder / "support.json", Support(Plane(np.array([0.0, 0.0, 1.0]), 0.0), box, figures), {})
     same = Similarity(1.0, np.eye(3), np.zeros(3))
     write_poses(folder / "poses.json", Poses(tuple(views), (), (0.0, 0.0), same), {})
-    blank = [
-        Crop(view.name, np.zeros((*view.camera.shape, 3), np.uint8), np.ones(view.camera.shape, bool)) for view in views
-    ]
-    write_crops(folder / "crops.zarr.zip", blank, {}, ordered=True, source_shape=views[0].camera.shape)
+    write_appearance(folder / "appearance.zarr.zip", learn_colors(), {})
+    crops = [Crop(view.name, photos[view.name], np.ones(view.camera.shape, bool)) for view in views]
+    write_crops(folder / "crops.zarr.zip", crops, {}, ordered=True, source_shape=views[0].camera.shape)
 
 
 def work(folder, **changes):
@@ -77,6 +103,7 @@ def work(folder, **changes):
     fusion = FuseObjectParams(clip_distance=5.0)
     surface.run(
         labels=folder / "labels.zarr.zip",
+        appearance=folder / "appearance.zarr.zip",
         keyframes=folder / "keyframes.json",
         depth=sorted((folder / "depth").iterdir()),
         consistency=folder / "consistency.zarr.zip",
@@ -88,6 +115,7 @@ def work(folder, **changes):
         masks=folder / "masks",
         method="surface",
         fusion=vars(fusion),
+        segmentation=vars(SegmentParams()),
         params=SurfaceParams(**({"longest_side": SIDE} | changes)),
         job=Job(Progress("test"), {"provenance": "test"}),
     )
@@ -159,8 +187,10 @@ def test_the_same_bytes_twice(pitted):
         {"sure_hull_trust": 0.9},
         {"sure_clip_share": 0.9},
         {"gap_views": 99},
+        {"gap_share": 1.0},
         {"smoothing_steps": 0},
         {"smoothing_contrast": 5.0},
+        {"outline_ramp": 1.0},
     ],
     ids=str,
 )
@@ -212,3 +242,17 @@ def test_masks_that_contradict_each_other_are_refused(table, tmp_path):
     with pytest.raises(UserError, match="masks that agree on where the object is"):
         work(tmp_path, bound_tolerance=0.0, gap_tolerance=0.0)
     assert not (tmp_path / "mesh.ply").exists()
+
+
+def test_masks_by_the_surface_so_far_mend_those_of_the_segmentation(table, tmp_path):
+    """Property: masks that lack a strip make the surface too small; colours near its outline bring it back."""
+    write_scene(tmp_path, table)
+    cut = read_segmentation(tmp_path / "labels.zarr.zip")
+    thin = {name: cv2.erode(mask.astype(np.uint8), np.ones((5, 5))) > 0 for name, mask in cut.masks.items()}
+    write_segmentation(tmp_path / "labels.zarr.zip", replace(cut, masks=thin), {})
+    found, meshes = [], []
+    for change in ({"frames": 0}, {"outline_weight": 1.0}, {"outline_weight": 200.0}):
+        meshes.append(work(tmp_path, **change)[1][0])
+        found.append(agreement(tmp_path, table))
+    assert found[1] > found[0] + 0.02 and found[1] > found[2]
+    assert len(set(meshes)) == 3

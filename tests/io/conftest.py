@@ -9,10 +9,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from sklearn.mixture import GaussianMixture
 
 from threedfs.geometry.rigid import look_at
 from threedfs.geometry.similarity import Similarity
 from threedfs.io import (
+    appearance,
     calibration,
     consistency,
     depth_maps,
@@ -25,10 +27,14 @@ from threedfs.io import (
     poses,
     segmentation,
     superpixels,
+    texture,
     volumes,
 )
 from threedfs.locate.find import Located
+from threedfs.segment.appearance import Appearance
+from threedfs.segment.color_model import ColorModel
 from threedfs.segment.superpixels import Superpixels
+from threedfs.segment.table import TablePicture
 from threedfs.types import Box, Camera, Features, Keyframe, Plane, SparsePoints, Support, View, VoxelGrid
 
 HEADER = {"parameters": {"size": 3, "names": ["a", "b"]}, "provenance": "0123"}
@@ -47,6 +53,11 @@ def picture(dtype=np.float32) -> np.ndarray:
 def view(name: str, x: float) -> View:
     """A view of the origin."""
     return View(name, CAMERA, look_at(np.array([x, 0.3, -2.0]), np.zeros(3), np.array([0.0, -1, 0])))
+
+
+def make_mixture() -> GaussianMixture:
+    """A mixture of two colours."""
+    return GaussianMixture(2, random_state=0).fit(RANDOM.normal(50, 10, (40, 3)))
 
 
 @dataclass(frozen=True)
@@ -166,6 +177,12 @@ ARTIFACTS = [
         located.read_located,
     ),
     Artifact(
+        "painted.json",
+        texture.TextureRecord(["000000", "000002"], ["000001"], 17, 0.125),
+        texture.write_texture,
+        texture.read_texture,
+    ),
+    Artifact(
         "silhouettes.zarr.zip",
         {"000002": RANDOM.random((6, 8)) > 0.5, "000001": RANDOM.random((6, 8)) > 0.5},
         volumes.write_silhouettes,
@@ -181,6 +198,21 @@ ARTIFACTS = [
         ),
         superpixels.write_superpixels,
         superpixels.read_superpixels,
+    ),
+    Artifact(
+        "appearance.zarr.zip",
+        Appearance(
+            ColorModel(make_mixture(), make_mixture()),
+            TablePicture(
+                RANDOM.random((4, 5, 3)).astype(np.float32),
+                RANDOM.random((4, 5)).astype(np.float32),
+                RANDOM.random((4, 5)) > 0.5,
+                RANDOM.random((4, 5)) > 0.5,
+                RANDOM.random((4, 3)),
+            ),
+        ),
+        appearance.write_appearance,
+        appearance.read_appearance,
     ),
     Artifact(
         "joint.zarr.zip",

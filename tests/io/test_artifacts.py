@@ -13,6 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sklearn.mixture import GaussianMixture
 
 from threedfs.errors import UserError
 from threedfs.io import schema
@@ -33,6 +34,8 @@ def plain(value):
         return plain([Frame(str(n), int(i), float(t), float(s), image) for n, i, t, s, image in rows])
     if isinstance(value, ConsistencyStore):
         return plain([(name, value.read(name)) for name in value.names])
+    if isinstance(value, GaussianMixture):
+        return plain([value.weights_, value.means_, value.precisions_cholesky_])
     if isinstance(value, np.ndarray):
         return (value.dtype.str, value.shape, value.tobytes())
     if dataclasses.is_dataclass(value):

@@ -8,6 +8,7 @@ import pytest
 import trimesh
 
 from threedfs.errors import UserError
+from threedfs.io.colored_meshes import read_colored_mesh, write_colored_mesh
 from threedfs.io.images import read_image, read_mask, write_mask, write_png
 from threedfs.io.meshes import read_mesh, write_mesh
 from threedfs.io.metrics import read_metrics, write_metrics
@@ -63,6 +64,23 @@ def test_same_mesh_has_the_same_bytes(tetrahedron, tmp_path):
     for name in "ab":
         write_mesh(tmp_path / f"{name}.ply", tetrahedron)
     assert (tmp_path / "a.ply").read_bytes() == (tmp_path / "b.ply").read_bytes()
+
+
+def test_colours_and_other_properties_of_vertices_are_in_a_ply(tetrahedron, tmp_path):
+    """Exact: by another's reading; without the properties the colours are the same."""
+    colors = np.random.default_rng(0).integers(0, 256, (4, 3), np.uint8)
+    confirmed = np.array([0, 0.25, 0.75, 1], np.float32)
+    write_colored_mesh(tmp_path / "a.ply", tetrahedron, colors, {"confirmed": confirmed})
+    write_colored_mesh(tmp_path / "b.ply", tetrahedron, colors)
+    assert b"property float confirmed\n" in (tmp_path / "a.ply").read_bytes()
+    assert b"confirmed" not in (tmp_path / "b.ply").read_bytes()
+    found = trimesh.load(tmp_path / "a.ply", process=False)
+    np.testing.assert_array_equal(found.metadata["_ply_raw"]["vertex"]["data"]["confirmed"], confirmed)
+    for name in "ab":
+        mesh, read = read_colored_mesh(tmp_path / f"{name}.ply")
+        np.testing.assert_array_equal(read, colors)
+        np.testing.assert_array_equal(mesh.faces, tetrahedron.faces)
+        assert np.abs(mesh.vertices - tetrahedron.vertices).max() < 1e-7
 
 
 def test_metrics_come_back(figures, tmp_path):

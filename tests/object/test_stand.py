@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import trimesh
 
-from threedfs.object.stand import stand_up
+from threedfs.object.stand import stand_up, turn_y_up
 from threedfs.types import Mesh, Plane
 
 
@@ -19,3 +19,20 @@ def test_tilted_box_stands_on_the_plane_with_its_own_proportions():
     assert np.allclose([stood.vertices[:, 2].min(), stood.vertices[:, 2].max()], [0.0, 80.0])
     assert np.allclose(stood.vertices[:, :2].min(axis=0), -stood.vertices[:, :2].max(axis=0))
     assert np.isclose(trimesh.Trimesh(stood.vertices, stood.faces).volume, 2 * 3 * 4 * 20**3)  # not mirrored either
+
+
+def test_without_a_height_the_size_stays():
+    mesh = trimesh.creation.box((2.0, 3.0, 4.0))
+    mesh.apply_translation([5.0, -3.0, 1.0])
+    stood = stand_up(Mesh(mesh.vertices, mesh.faces), Plane(np.array([0.0, 1.0, 0.0]), 4.5))
+    assert np.allclose(np.sort(np.ptp(stood.vertices, axis=0)), [2, 3, 4])
+    assert np.isclose(np.ptp(stood.vertices[:, 2]), 3) and np.isclose(stood.vertices[:, 2].min(), 0)
+
+
+def test_up_is_y_where_it_was_z():
+    """Exact: x stays, z becomes y, and nothing is mirrored."""
+    box = trimesh.creation.box((1.0, 2.0, 3.0))
+    turned = turn_y_up(Mesh(np.array([[0.0, 0, 1], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])))
+    assert turned.vertices.tolist() == [[0, 1, 0], [1, 0, 0], [0, 0, -1]]
+    made = turn_y_up(Mesh(box.vertices, box.faces))
+    assert np.isclose(trimesh.Trimesh(made.vertices, made.faces).volume, 6)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+
 import numpy as np
 import pytest
 import trimesh
@@ -9,8 +11,10 @@ import trimesh
 from threedfs.errors import UserError
 from threedfs.io.colored_meshes import read_colored_mesh, write_colored_mesh
 from threedfs.io.meshes import read_mesh, write_mesh
+from threedfs.io.textured_meshes import read_textured_obj, write_textured_obj
 from threedfs.io.volumes import write_support
 from threedfs.run_end.export import export
+from threedfs.texture.textured import TexturedMesh
 from threedfs.types import Box, Mesh, Plane, Support
 
 
@@ -28,11 +32,64 @@ def results(tmp_path):
     return tmp_path
 
 
-@pytest.mark.parametrize("name", ["ball.stl", "ball.ply", "ball.obj", "ball.GLB"])
-def test_mesh_has_the_height_given_and_stands_at_zero(results, name):
+@pytest.fixture
+def painted(results):
+    """The same, with an egg in a folder of textures, for to tell the two apart: it is larger."""
+    egg = trimesh.creation.icosphere(subdivisions=1, radius=1.5)
+    mesh = Mesh(np.asarray(egg.vertices), np.asarray(egg.faces, np.int64))
+    generator = np.random.default_rng(0)
+    image = generator.integers(0, 256, (16, 24, 3), np.uint8)
+    textured = TexturedMesh(mesh, generator.uniform(0, 15, (len(mesh.faces), 3, 2)), image)
+    write_textured_obj(results / "11_object/surface/textured/mesh.obj", textured)
+    return results
+
+
+def check_stands(path, up):
+    """Check that a mesh is 40 high, stands at 0, and over the origin."""
+    written = read_mesh(path).vertices
+    low, high = written.min(axis=0), written.max(axis=0)
+    assert np.allclose([low[up], high[up]], [0, 40], atol=1e-4)
+    level = [axis for axis in range(3) if axis != up]
+    assert np.allclose((low + high)[level], 0, atol=1e-4)
+
+
+@pytest.mark.parametrize(("name", "up"), [("ball.stl", 2), ("ball.ply", 2), ("ball.obj", 2), ("ball.GLB", 1)])
+def test_mesh_has_the_height_given_and_stands_at_zero(results, name, up):
+    """Exact: z is up, and in GLB y, as its readers expect."""
     export(results, "40", results / name)
-    written = read_mesh(results / name).vertices
-    assert np.allclose([written[:, 2].min(), written[:, 2].max()], [0, 40], atol=1e-4)
+    check_stands(results / name, up)
+
+
+@pytest.mark.parametrize(("name", "up"), [("ball.obj", 2), ("ball.glb", 1), ("my ball.OBJ", 2)])
+def test_a_texture_goes_along_where_the_format_has_one(painted, name, up):
+    """Exact: the picture is the one of the run, and the mesh that which it was painted on."""
+    export(painted, "40", painted / name)
+    check_stands(painted / name, up)
+    found = trimesh.load(painted / name, force="mesh", process=False)
+    material = found.visual.material
+    picture = material.image if up == 2 else material.baseColorTexture
+    original = read_textured_obj(painted / "11_object/surface/textured/mesh.obj").image
+    np.testing.assert_array_equal(np.asarray(picture.convert("RGB")), original)
+    joined = trimesh.Trimesh(found.vertices, found.faces)
+    assert len(joined.faces) == 80 and joined.is_watertight and joined.volume > 0
+
+
+@pytest.mark.parametrize("name", ["ball.stl", "ball.ply"])
+def test_formats_without_a_texture_have_the_full_mesh_as_before(painted, name):
+    """Exact: the bytes are those of a run without one."""
+    export(painted, "40", painted / name)
+    with_texture = (painted / name).read_bytes()
+    assert len(read_mesh(painted / name).faces) == 320
+    shutil.rmtree(painted / "11_object/surface/textured")
+    export(painted, "40", painted / name)
+    assert (painted / name).read_bytes() == with_texture
+
+
+def test_a_method_without_a_texture_has_its_own_mesh(painted):
+    shutil.copytree(painted / "11_object/surface", painted / "11_object/poisson")
+    shutil.rmtree(painted / "11_object/poisson/textured")
+    export(painted, "40", painted / "ball.glb", "poisson")
+    assert trimesh.load(painted / "ball.glb", force="mesh").visual.kind != "texture"
 
 
 @pytest.mark.parametrize("name", ["ball.ply", "ball.glb", "ball.obj"])

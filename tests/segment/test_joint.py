@@ -17,7 +17,7 @@ from threedfs.locate.height import height_above
 from threedfs.params.segment import SegmentParams
 from threedfs.params.volumetric_cut import VolumetricCutParams
 from threedfs.segment.energy import OBJECT
-from threedfs.segment.gather import GatherRule, gather_images, gather_voxels
+from threedfs.segment.gather import GatherRule, gather_images, gather_voxels, picture_support
 from threedfs.segment.initialise import UNDECIDED
 from threedfs.segment.joint import CutRule, segment_jointly
 from threedfs.segment.outline import draw_voxels
@@ -43,7 +43,7 @@ def segment(scene, params=DEFAULTS, *, alone: bool = False):
     gather, rule = rules(params)
     rng = np.random.default_rng(0)
     volume, bounds = gather_voxels(scene, gather)
-    images = gather_images(scene, volume, bounds, gather, rng)
+    images = gather_images(scene, volume, bounds, picture_support(scene, bounds, gather), gather, rng)
     return images, segment_jointly(images, None if alone else volume, rule, rng)
 
 
@@ -153,7 +153,7 @@ def test_keyframes_without_links_are_named():
     gather, rule = rules(DEFAULTS)
     rng = np.random.default_rng(0)
     volume, bounds = gather_voxels(scene, gather)
-    images = gather_images(scene, volume, bounds, gather, rng)
+    images = gather_images(scene, volume, bounds, picture_support(scene, bounds, gather), gather, rng)
     bare = {name: replace(e, link_pairs=e.link_pairs[:0], link_weight=e.link_weight[:0]) for name, e in images.items()}
     first = next(iter(images))
     notes = []
@@ -248,10 +248,12 @@ def test_links_tie_decided_superpixels_too_and_none_have_no_weight():
     rule, _ = rules(replace(DEFAULTS, inner_level=-0.5))
     for links in (True, False):
         volume, bounds = gather_voxels(scene, replace(rule, surface_links=links))
-        images = gather_images(scene, volume, bounds, replace(rule, surface_links=links), np.random.default_rng(0))
+        images = gather_images(
+            scene, volume, bounds, None, replace(rule, surface_links=links), np.random.default_rng(0)
+        )
         linked = np.concatenate([evidence.decided[evidence.link_pairs[:, 0]] for evidence in images.values()])
         assert (linked == UNDECIDED).any() and (linked != UNDECIDED).any()
-        images = gather_images(scene, volume, bounds, replace(rule, link_weight=0.0), np.random.default_rng(0))
+        images = gather_images(scene, volume, bounds, None, replace(rule, link_weight=0.0), np.random.default_rng(0))
         assert all(len(evidence.link_pairs) == 0 for evidence in images.values())
 
 

@@ -19,7 +19,7 @@ def write(stage, inputs, outputs, names, params, job):
     given["inputs"] = {name: digest(value, names.get("keyframe")) for name, value in inputs.items()}
     for name, path in outputs.items():
         text = json.dumps({"output": name, **given}, sort_keys=True)
-        if path.name in ("masks", "depth"):
+        if path.name in ("masks", "depth", "textured"):
             path.mkdir()
             path = path / "000001.png"
         elif path.name == "keyframes.json":
@@ -34,8 +34,9 @@ def write(stage, inputs, outputs, names, params, job):
                 }
             )
         elif path.suffix == ".csv":
-            method = {"evaluate": names.get("method"), "depth_experiment": "depth/all"}.get(stage, "")
-            row = f"iou_mean,0.5,1,{names['dataset']},{names['sequence']},{method},"
+            method = {"depth_experiment": "depth/all"}.get(stage, names.get("method", ""))
+            figure = "photo_psnr,30,dB" if stage == "photographs" else "iou_mean,0.5,1"
+            row = f"{figure},{names['dataset']},{names['sequence']},{method},"
             text = f"name,value,unit,dataset,sequence,method,keyframe\n{row}\n"
         path.write_text(text[:10])
         time.sleep(PAUSE)

@@ -78,6 +78,37 @@ rule evaluate:
         "../scripts/run_stage.py"
 
 
+rule photographs:
+    input:
+        mesh="results/{sequence}/11_object/{method}/mesh.ply",
+        textured="results/{sequence}/11_object/{method}/textured",
+        keyframes="results/{sequence}/04_crops/keyframes.json",
+        crops="results/{sequence}/04_crops/crops.zarr.zip",
+    output:
+        metrics="results/{sequence}/12_evaluate/{method}/photographs.csv",
+    log:
+        "results/{sequence}/logs/photographs/{method}.log",
+    benchmark:
+        "results/{sequence}/benchmarks/photographs/{method}.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 1
+    resources:
+        mem_mb=1500,
+    params:
+        code=code_of("photographs"),
+        settings=settings_of("photographs"),
+        seed=config["seed"],
+        labels=lambda wildcards: {
+            "dataset": SEQUENCES[wildcards.sequence]["dataset"],
+            "sequence": wildcards.sequence,
+        },
+    message:
+        "Photograph {wildcards.sequence} by {wildcards.method}."
+    script:
+        "../scripts/run_stage.py"
+
+
 rule collect:
     input:
         tables=[
@@ -88,6 +119,11 @@ rule collect:
                 "results/{sequence}/12_evaluate/{method}/metrics.csv",
                 sequence=OBJECTS,
                 method=METHODS,
+            ),
+            *expand(
+                "results/{sequence}/12_evaluate/{method}/photographs.csv",
+                sequence=OBJECTS,
+                method=PAINTED,
             ),
             *expand(
                 "results/{sequence}/12_depth_experiment/metrics.csv", sequence=TRIED

@@ -29,6 +29,8 @@ METHODS = [
     ),
 ]
 
+PAINTED = [method for method in METHODS if method.partition("@")[0] in SURFACES]
+
 
 def given(key):
     """Return an input function: a file or folder that the configuration names for a sequence, or nothing.
@@ -93,9 +95,10 @@ def box_of_scope(wildcards):
 
 
 def results_of_method(method):
-    """Return the names of what a method makes: those of pixels have no mesh."""
+    """Return the names of what a method makes: those of pixels have no mesh, and few have a texture."""
     has_mesh = method.partition("@")[0] not in PIXEL_CUTS
-    return ["mesh.ply", "masks"] if has_mesh else ["masks"]
+    painted = ["mesh.glb", "textured"] if method in PAINTED else []
+    return [*(["mesh.ply"] if has_mesh else []), *painted, "masks"]
 
 
 def mesh_of_method(wildcards):
@@ -110,6 +113,12 @@ def labels_of_method(wildcards):
     own = "segment" in VARIANTS.get(wildcards.variant[1:], {})
     name = f"{cut}{wildcards.variant if own else ''}"
     return f"results/{wildcards.sequence}/10_segment/{name}.zarr.zip"
+
+
+def appearance_of_method(wildcards):
+    """Return what the segmentation that a method takes the object from has learnt of its looks."""
+    labels = Path(labels_of_method(wildcards))
+    return str(labels.parent / "appearance" / labels.name)
 
 
 def field_to_search(wildcards):

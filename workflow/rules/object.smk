@@ -1,4 +1,4 @@
-# 11: the object alone: closed mesh, silhouettes, masks.
+# 11: the object alone: closed mesh, silhouettes, masks; the mesh with a texture.
 
 
 rule object:
@@ -130,6 +130,7 @@ rule pixel_masks:
 rule surface:
     input:
         labels=labels_of_method,
+        appearance=appearance_of_method,
         keyframes="results/{sequence}/04_crops/keyframes.json",
         depth="results/{sequence}/06_depth",
         consistency="results/{sequence}/07_fusion/consistency.zarr.zip",
@@ -155,8 +156,41 @@ rule surface:
         code=code_of("surface"),
         settings=settings_of("surface"),
         seed=config["seed"],
-        labels=lambda wildcards: {"fusion": settings_of("fuse_object")(wildcards)},
+        labels=lambda wildcards: {
+            "fusion": settings_of("fuse_object")(wildcards),
+            "segmentation": settings_of("segment")(wildcards),
+        },
     message:
         "Surface of {wildcards.sequence} by {wildcards.method}{wildcards.variant}."
+    script:
+        "../scripts/run_stage.py"
+
+
+rule texture:
+    input:
+        mesh="results/{sequence}/11_object/{method}{variant}/mesh.ply",
+        support="results/{sequence}/03_scene/support.json",
+        keyframes="results/{sequence}/04_crops/keyframes.json",
+        crops="results/{sequence}/04_crops/crops.zarr.zip",
+    output:
+        glb="results/{sequence}/11_object/{method}{variant}/mesh.glb",
+        textured=directory("results/{sequence}/11_object/{method}{variant}/textured"),
+    log:
+        "results/{sequence}/logs/texture/{method}{variant}.log",
+    benchmark:
+        "results/{sequence}/benchmarks/texture/{method}{variant}.tsv"
+    wildcard_constraints:
+        method="|".join(SURFACES),
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 1
+    resources:
+        mem_mb=2000,
+    params:
+        code=code_of("texture"),
+        settings=settings_of("texture"),
+        seed=config["seed"],
+    message:
+        "Paint the surface of {wildcards.sequence} by {wildcards.method}{wildcards.variant}."
     script:
         "../scripts/run_stage.py"

@@ -14,6 +14,7 @@ rule segment:
         consistency="results/{sequence}/07_fusion/consistency.zarr.zip",
     output:
         labels="results/{sequence}/10_segment/{cut}{variant}.zarr.zip",
+        appearance="results/{sequence}/10_segment/appearance/{cut}{variant}.zarr.zip",
     log:
         "results/{sequence}/logs/segment/{cut}{variant}.log",
     benchmark:

@@ -137,3 +137,18 @@ def cylinder_figures(residual: CylinderResidual) -> list[Figure]:
         Figure("cylinder_residual_median", 100 * residual.median, "% of radius"),
         Figure("cylinder_residual_p90", 100 * residual.percentile_90, "% of radius"),
     ]
+
+
+def photo_figures(photos: np.ndarray) -> list[Figure]:
+    """Return the mean PSNR and SSIM over photographs, of a textured mesh and of one with colours at its vertices.
+
+    Parameters
+    ----------
+    photos : (N, 4) float64
+        PSNR and SSIM of the one and of the other against each photograph; no figures without any.
+    """
+    if not len(photos):
+        return []
+    names = ("photo_psnr", "photo_ssim", "photo_psnr_vertices", "photo_ssim_vertices")
+    means = zip(names, photos.mean(axis=0), ("dB", "1", "dB", "1"), strict=True)
+    return [*(Figure(name, float(value), unit) for name, value, unit in means), Figure("photos", len(photos), "photos")]

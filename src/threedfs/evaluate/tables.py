@@ -61,6 +61,8 @@ def mesh_tables(scores: Scores, dataset: str) -> list[Table]:
             Column("pieces", "mesh_pieces", ".0f", method=method),
             Column("handles", "mesh_genus", ".0f", method=method),
             Column("filled", "mesh_filled", ".2f", method=method),
+            Column("photographs, PSNR, dB", "photo_psnr", ".1f", method=method),
+            Column("SSIM", "photo_ssim", method=method),
         ]
         tables += _measured(scores, dataset, columns, f"Meshes by {method}, {dataset}")
     return tables

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
@@ -12,14 +13,19 @@ from threedfs.io.meshes import read_mesh
 from threedfs.types import Mesh
 
 
-def write_colored_mesh(path: Path, mesh: Mesh, colors: np.ndarray | None) -> None:
+def write_colored_mesh(
+    path: Path, mesh: Mesh, colors: np.ndarray | None, properties: Mapping[str, np.ndarray] | None = None
+) -> None:
     """Write a mesh with the colours (V, 3) uint8 RGB of its vertices in the format of the path's ending.
 
-    Binary PLY, OBJ and GLB have colours; STL cannot. Without colours as `threedfs.io.meshes.write_mesh`.
+    Binary PLY, OBJ and GLB have colours; STL cannot. PLY has other properties (V,) of the vertices too. Without colours
+    as `threedfs.io.meshes.write_mesh`.
     """
     kind = path.suffix.lower().removeprefix(".")
     settings = {"vertex_normal": False} if kind == "ply" else {}
-    made = trimesh.Trimesh(mesh.vertices, mesh.faces, vertex_colors=colors, process=False)
+    made = trimesh.Trimesh(
+        mesh.vertices, mesh.faces, vertex_colors=colors, vertex_attributes=dict(properties or {}), process=False
+    )
     data = made.export(file_type=kind, **settings)
     with atomic(path) as temporary:
         temporary.write_bytes(data.encode() if isinstance(data, str) else data)

@@ -1,12 +1,14 @@
-"""Standing an object upright on a plane at its true height."""
+"""Standing an object upright on a plane, at its true height where that is known."""
 
 from __future__ import annotations
+
+import numpy as np
 
 from threedfs.geometry.plane import axes_on
 from threedfs.types import Mesh, Plane
 
 
-def stand_up(mesh: Mesh, plane: Plane, height: float) -> Mesh:
+def stand_up(mesh: Mesh, plane: Plane, height: float | None = None) -> Mesh:
     """Turn a mesh so that its support plane is level, scale it to a height and put it over the origin.
 
     Parameters
@@ -15,8 +17,8 @@ def stand_up(mesh: Mesh, plane: Plane, height: float) -> Mesh:
         Scene units.
     plane : Plane
         What it stands on, scene units; its normal will point along z.
-    height : float
-        From the lowest to the highest point, in the unit that is wanted.
+    height : float, optional
+        From the lowest to the highest point, in the unit that is wanted; without it, the mesh keeps its size.
 
     Returns
     -------
@@ -26,5 +28,11 @@ def stand_up(mesh: Mesh, plane: Plane, height: float) -> Mesh:
     vertices = mesh.vertices @ axes_on(plane.normal).T
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     middle = (low + high) / 2
-    vertices = (vertices - [middle[0], middle[1], low[2]]) * (height / (high[2] - low[2]))
-    return Mesh(vertices, mesh.faces)
+    scale = 1.0 if height is None else height / (high[2] - low[2])
+    return Mesh((vertices - [middle[0], middle[1], low[2]]) * scale, mesh.faces)
+
+
+def turn_y_up(mesh: Mesh) -> Mesh:
+    """Turn a mesh whose z points up so that y does, as GLB wants it; not mirrored."""
+    x, y, z = mesh.vertices.T
+    return Mesh(np.stack([x, z, -y], axis=1), mesh.faces)

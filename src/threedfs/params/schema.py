@@ -39,9 +39,11 @@ STAGES = (
     "object",
     "cut_object",
     "surface",
+    "texture",
     "poisson",
     "evaluate_reconstruction",
     "evaluate",
+    "photographs",
     "depth_trial",
     "depth_experiment",
 )

@@ -81,7 +81,10 @@ class SurfaceParams(SmoothingSettings):
         0.2, "share of the masks that may be wrong in the hull that fills gaps", minimum=0.0, maximum=1.0
     )
     gap_views: int = parameter(
-        2, "views that show a voxel of the hull where nothing solid is before it is filled", minimum=1
+        2, "least views that show a voxel of the hull where nothing solid is before it is filled", minimum=1
+    )
+    gap_share: float = parameter(
+        0.05, "share of the masks that these views must be, where that is more", minimum=0.0, maximum=1.0
     )
     closing: float = parameter(
         1.0,
@@ -94,4 +97,18 @@ class SurfaceParams(SmoothingSettings):
         "times that the field becomes its median over a voxel and the 6 beside it: pits, spikes and handles go",
         minimum=0,
         maximum=10,
+    )
+    frames: int = parameter(
+        60,
+        "frames whose masks the surface so far gives, to shape it once more; keyframes are among them; 0 for none",
+        minimum=0,
+    )
+    outline_weight: float = parameter(
+        6.0, "weight of the surface's silhouette in those masks", symbol="lambda_sil", equation="Eq. 23", minimum=0.0
+    )
+    outline_ramp: float = parameter(
+        6.0,
+        "distance to both sides of its outline over which that silhouette is soft, and pixels are labelled anew",
+        unit="voxel of the object's grid",
+        exclusive_minimum=0.0,
     )

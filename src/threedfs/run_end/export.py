@@ -8,18 +8,24 @@ The format is that of the file's ending: stl, ply, obj or glb. METHOD is surface
 from __future__ import annotations
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 from threedfs.errors import UserError
 from threedfs.io.colored_meshes import read_colored_mesh, write_colored_mesh
+from threedfs.io.textured_meshes import read_textured_obj, write_textured_glb, write_textured_obj
 from threedfs.io.volumes import read_support
-from threedfs.object.stand import stand_up
+from threedfs.object.stand import stand_up, turn_y_up
+from threedfs.types import Mesh
 
 _FORMATS = (".stl", ".ply", ".obj", ".glb")
+_TEXTURED = {".obj": write_textured_obj, ".glb": write_textured_glb}
 
 
 def export(sequence: Path, height: str, file: Path, method: str = "surface") -> None:
-    """Write a sequence's mesh, with its colours if it has any, with its support plane at z = 0.
+    """Write a sequence's mesh, with its texture or colours if it has any, standing on the plane z = 0.
+
+    GLB and OBJ have textures; in GLB, y is up and the plane y = 0, as its readers expect.
 
     Parameters
     ----------
@@ -50,9 +56,19 @@ def export(sequence: Path, height: str, file: Path, method: str = "surface") -> 
             f"{path}: expected the mesh of a run, found none; correct {sequence}, run the sequence first, or "
             "name a method that was run as METHOD."
         )
-    mesh, colors = read_colored_mesh(path)
-    plane = read_support(sequence / "03_scene" / "support.json").plane
-    write_colored_mesh(file, stand_up(mesh, plane, size), colors)
+    plane, kind = read_support(sequence / "03_scene" / "support.json").plane, file.suffix.lower()
+
+    def place(mesh: Mesh) -> Mesh:
+        upright = stand_up(mesh, plane, size)
+        return turn_y_up(upright) if kind == ".glb" else upright
+
+    textured = path.parent / "textured" / "mesh.obj"
+    if kind in _TEXTURED and textured.is_file():
+        painted = read_textured_obj(textured)
+        _TEXTURED[kind](file, replace(painted, mesh=place(painted.mesh)))
+    else:
+        mesh, colors = read_colored_mesh(path)
+        write_colored_mesh(file, place(mesh), colors)
 
 
 if __name__ == "__main__":

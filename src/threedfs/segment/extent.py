@@ -8,7 +8,7 @@ import numpy as np
 
 from threedfs.hull.gaps import fit_masks
 from threedfs.segment.energy import OBJECT
-from threedfs.segment.gather import GatherRule, Scene, gather_images, gather_voxels
+from threedfs.segment.gather import GatherRule, Scene, gather_images, gather_voxels, picture_support
 from threedfs.segment.joint import CutRule, segment_jointly
 from threedfs.segment.outline import largest_piece
 
@@ -34,7 +34,7 @@ def find_extent(
         Takes a message to report progress.
     """
     volume, bounds = gather_voxels(scene, gather)
-    images = gather_images(scene, volume, bounds, gather, rng)
+    images = gather_images(scene, volume, bounds, picture_support(scene, bounds, gather), gather, rng)
     found = segment_jointly(images, volume, cut, rng, note)
     voxels = found.voxels == OBJECT
     if not voxels.any():

@@ -26,7 +26,7 @@ from threedfs.segment.initialise import (
 from threedfs.segment.outline import draw_voxels
 from threedfs.segment.pairwise import link_voxels, superpixel_weights
 from threedfs.segment.superpixels import Superpixels
-from threedfs.segment.table import match_table, picture_table
+from threedfs.segment.table import TablePicture, match_table, picture_table
 from threedfs.types import Box, View
 
 _SURE_LEVEL = -0.5
@@ -118,8 +118,29 @@ def gather_voxels(scene: Scene, rule: GatherRule) -> tuple[VoxelEvidence, Bounds
     return VoxelEvidence(grid, scene.sdf, normalised, fixed, first), Bounds(outer, guess, inner, hides)
 
 
+def picture_support(scene: Scene, bounds: Bounds, rule: GatherRule) -> TablePicture | None:
+    """Return how the support surface looks around the object, where keyframes show it bare; None if not wanted."""
+    if not rule.table:
+        return None
+    hides = draw_voxels(bounds.hides, scene.located.grid, scene.views)
+    covered = {name: cv2.dilate(mask.astype(np.uint8), np.ones((5, 5))) > 0 for name, mask in hides.items()}
+    around = scene.box.grow(rule.table_reach * scene.box.longest)
+    solid = world_from_index(scene.located.grid, np.argwhere(bounds.hides))
+    return picture_table(scene.images, scene.views, covered, scene.valid, scene.located.plane, solid, around)
+
+
+def pixels_at(box: Box, view: View, length: float) -> float:
+    """Return how many pixels of a view a length, scene units, takes up at the middle of a box."""
+    return length * view.camera.fx / float(view.cam_from_world[2] @ np.append(box.centre, 1))
+
+
 def gather_images(
-    scene: Scene, volume: VoxelEvidence, bounds: Bounds, rule: GatherRule, rng: np.random.Generator
+    scene: Scene,
+    volume: VoxelEvidence,
+    bounds: Bounds,
+    table: TablePicture | None,
+    rule: GatherRule,
+    rng: np.random.Generator,
 ) -> dict[str, ImageEvidence]:
     """Return the evidence of each keyframe, by its name.
 
@@ -128,22 +149,17 @@ def gather_images(
     scene : Scene
     volume, bounds
         As `gather_voxels` returns them.
+    table : TablePicture or None
+        As `picture_support` returns it.
     rule : GatherRule
     rng : numpy.random.Generator
         Draws first labels, where they are random.
     """
-    outer, guess, inner, hides = (
-        draw_voxels(voxels, scene.located.grid, scene.views)
-        for voxels in (bounds.outer, bounds.guess, bounds.inner, bounds.hides)
+    outer, guess, inner = (
+        draw_voxels(voxels, scene.located.grid, scene.views) for voxels in (bounds.outer, bounds.guess, bounds.inner)
     )
     if rule.fill_outer:
         outer = {name: ndimage.binary_fill_holes(mask) for name, mask in outer.items()}
-    table = None
-    if rule.table:
-        covered = {name: cv2.dilate(mask.astype(np.uint8), np.ones((5, 5))) > 0 for name, mask in hides.items()}
-        around = scene.box.grow(rule.table_reach * scene.box.longest)
-        solid = world_from_index(scene.located.grid, np.argwhere(bounds.hides))
-        table = picture_table(scene.images, scene.views, covered, scene.valid, scene.located.plane, solid, around)
     evidence = {}
     for name, view in scene.views.items():
         superpixels = scene.superpixels[name]
@@ -155,7 +171,6 @@ def gather_images(
         points = backproject_map(view, scene.depth[name])
         outside = np.isfinite(scene.depth[name]) & ~scene.box.contains(points)
         pairs, weight = _link(scene, volume, name, points, rule)
-        middle = view.cam_from_world[2] @ np.append(scene.box.centre, 1)
         evidence[name] = ImageEvidence(
             view,
             scene.images[name],
@@ -166,7 +181,7 @@ def gather_images(
             rule.pair_weight * superpixel_weights(superpixels, rule.pair_falloff, rule.by_mean),
             pairs,
             weight,
-            rule.silhouette_ramp * scene.located.grid.spacing * view.camera.fx / middle,
+            pixels_at(scene.box, view, rule.silhouette_ramp * scene.located.grid.spacing),
             match_table(lab_image(scene.images[name]), *table.predict(view)) if table else None,
         )
     return evidence

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from threedfs.segment.alpha_expansion import expand
-from threedfs.segment.color_model import ColorModel, lab_image, truncate
+from threedfs.segment.color_model import ColorModel, TableMatch, lab_image, truncate
 from threedfs.segment.energy import BACKGROUND, OBJECT, fold_given
 from threedfs.segment.evidence import ImageEvidence
 from threedfs.segment.unaries import silhouette_unary, soften_silhouette
@@ -49,22 +49,35 @@ def refine_mask(
     start = evidence.superpixels.paint(labels == OBJECT)
     inside = np.append(evidence.is_open, False)[evidence.superpixels.index]
     _, lab, table = evidence.band
-    chance = colors.posterior(lab, table)
-    unary = rule.color_weight * np.stack([truncate(p, rule.color_cap) for p in (1 - chance, chance)], axis=1)
+    unary = color_unary(colors, lab, table, rule)
     own = start[inside].astype(np.uint8)
     unary[np.arange(len(own)), 1 - own] += rule.label_weight
     if silhouette is not None:
         share = soften_silhouette(silhouette, evidence.silhouette_reach)[inside]
         unary += rule.silhouette_weight * silhouette_unary(share)
-    pairs, weight = _weigh_neighbours(lab_image(evidence.image), inside, rule)
+    pairs, weight = weigh_neighbours(lab_image(evidence.image), inside, rule)
     graph = fold_given(pairs, weight, start.reshape(-1).astype(np.uint8), inside.reshape(-1), 2).with_costs(unary)
     mask = start.copy()
     mask[inside] = expand(graph, expand(graph, own, OBJECT), BACKGROUND) == OBJECT
     return mask
 
 
-def _weigh_neighbours(lab, inside, rule):
-    """Return pairs (P, 2) int32 of 8-neighbours, one of them in the band at least, and the cost of parting them."""
+def color_unary(colors: ColorModel, lab: np.ndarray, table: TableMatch | None, rule: RefineRule) -> np.ndarray:
+    """Return what background and object cost pixels of Lab colours (N, 3) by these alone, (N, 2) (Eqs. 20, 21)."""
+    chance = colors.posterior(lab, table)
+    return rule.color_weight * np.stack([truncate(p, rule.color_cap) for p in (1 - chance, chance)], axis=1)
+
+
+def weigh_neighbours(lab: np.ndarray, inside: np.ndarray, rule: RefineRule) -> tuple[np.ndarray, np.ndarray]:
+    """Return pairs (P, 2) int32 of 8-neighbours, one of them in the band at least, and the cost of parting them (P,).
+
+    Parameters
+    ----------
+    lab : (H, W, 3) float32
+    inside : (H, W) bool
+        The band.
+    rule : RefineRule
+    """
     rows, columns = inside.shape
     number = np.arange(inside.size, dtype=np.int32).reshape(inside.shape)
     pairs, weights = [], []

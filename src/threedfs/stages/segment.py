@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
+from threedfs.io.appearance import write_appearance
 from threedfs.io.consistency import read_consistency
 from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_depth_map
@@ -18,8 +19,15 @@ from threedfs.io.volumes import read_support, read_volume
 from threedfs.job import Job
 from threedfs.params.rules import make_rule
 from threedfs.params.segment import SegmentParams
+from threedfs.segment.appearance import Appearance
 from threedfs.segment.energy import OBJECT
-from threedfs.segment.gather import GatherRule, Scene, gather_images, gather_voxels
+from threedfs.segment.gather import (
+    GatherRule,
+    Scene,
+    gather_images,
+    gather_voxels,
+    picture_support,
+)
 from threedfs.segment.joint import CutRule, segment_jointly
 from threedfs.segment.outline import draw_voxels
 from threedfs.segment.refine import RefineRule, refine_mask
@@ -37,11 +45,15 @@ def run(
     depth: list[Path],
     consistency: Path,
     labels: Path,
+    appearance: Path,
     cut: str,
     params: SegmentParams,
     job: Job,
 ) -> None:
-    """Read a field, the object in it and what the keyframes show; write labels, `joint` or of the `images` alone."""
+    """Read a field, the object in it and what the keyframes show; write labels, `joint` or of the `images` alone.
+
+    What it has learnt of colours and of the support surface is written as well: it holds for frames between, too.
+    """
     place, entries, store = read_located(located), read_keyframes(keyframes), read_crops(crops)
     views = {name: entry.view for name, entry in entries.items()}
     trust = read_consistency(consistency)
@@ -67,7 +79,8 @@ def run(
     job.progress.note(f"{cut}: the {params.field} field, {len(views)} keyframes")
     generator = np.random.default_rng(job.seed)
     volume, bounds = gather_voxels(scene, gather)
-    images = gather_images(scene, volume, bounds, gather, generator)
+    table = picture_support(scene, bounds, gather)
+    images = gather_images(scene, volume, bounds, table, gather, generator)
     rule = make_rule(CutRule, params, components=params.color_components)
     found = segment_jointly(images, volume if cut == "joint" else None, rule, generator, job.progress.note)
     masks = {name: images[name].superpixels.paint(own == OBJECT) for name, own in found.superpixels.items()}
@@ -86,3 +99,4 @@ def run(
         }
     voxels = np.zeros((0, 0, 0), np.uint8) if found.voxels is None else found.voxels
     write_segmentation(labels, Segmentation(masks, place.grid, voxels, found.energies, found.swaps), job.header)
+    write_appearance(appearance, Appearance(found.colors, table), job.header)

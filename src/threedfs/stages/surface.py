@@ -6,13 +6,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from threedfs.crops.place import measure_object
 from threedfs.errors import UserError
 from threedfs.fusion.fuse import VoteRule, limit_clip_distance, start_fusion
-from threedfs.hull.distance import measure_hull
-from threedfs.hull.grid import lay_grid, may_be_hull
+from threedfs.hull.grid import lay_grid
+from threedfs.io.appearance import read_appearance
 from threedfs.io.colored_meshes import write_colored_mesh
 from threedfs.io.consistency import read_consistency
 from threedfs.io.crops import read_crops
@@ -24,21 +22,25 @@ from threedfs.io.segmentation import read_segmentation
 from threedfs.io.volumes import read_support
 from threedfs.job import Job
 from threedfs.locate.height import height_above
-from threedfs.object.extract import extract_surface
-from threedfs.object.field import mask_field
-from threedfs.object.smooth import smooth_mesh
-from threedfs.paint.vertices import color_vertices
+from threedfs.object.silhouettes import draw_silhouette
 from threedfs.params.fuse_object import FuseObjectParams
 from threedfs.params.rules import make_rule
 from threedfs.params.schema import make_params
+from threedfs.params.segment import SegmentParams
 from threedfs.params.surface import SurfaceParams
-from threedfs.surface.complete import HullRule, close_pits, complete_depth
+from threedfs.segment.frame_mask import mask_frame, spread_frames
+from threedfs.segment.gather import pixels_at
+from threedfs.segment.refine import RefineRule
+from threedfs.surface.complete import HullRule
+from threedfs.surface.shape import ShapeRule, shape_surface
 from threedfs.surface.trust import TrustRule, rate_sureness, trust_depth
+from threedfs.texture.vertices import color_vertices, confirm_vertices, sample_vertices
 
 
 def run(
     *,
     labels: Path,
+    appearance: Path,
     keyframes: Path,
     depth: list[Path],
     consistency: Path,
@@ -50,14 +52,18 @@ def run(
     masks: Path,
     method: str,
     fusion: Mapping[str, Any],
+    segmentation: Mapping[str, Any],
     params: SurfaceParams,
     job: Job,
 ) -> None:
     """Read depth, what other views say of it, and the masks of the joint segmentation; write mesh and masks.
 
-    Not in the paper. Depth maps are fused once more, on a grid around the hull of the masks, by the settings `fusion`
-    of fuse_object, but each pixel counts by how well it is confirmed, and the hull votes among them everywhere. So a
-    depth that nothing confirms carves nothing inside of the outline, and a hollow that photographs show is not filled.
+    Not in the paper. Depth maps of the keyframes are fused once more, on a grid around the hull of the masks, by the
+    settings `fusion` of fuse_object, but each pixel counts by how well it is confirmed, and the hull of the masks votes
+    among them everywhere. So a depth that nothing confirms carves nothing inside of the outline, and a hollow that
+    photographs show is not filled. Then the surface so far outlines the object in more frames, and in the keyframes
+    anew, by what the segmentation has learnt (weights of its settings `segmentation`), and the hull of these masks
+    shapes it once more.
 
     Raises
     ------
@@ -72,10 +78,10 @@ def run(
             "outline to go by: use fused_sdf."
         )
     place, trust = read_support(support), read_consistency(consistency)
-    valid = {name: images.valid_of(name) for name in views}
+    frames = spread_frames(entries.values(), images.names, params.frames)
+    valid = {name: images.valid_of(name) for name in frames}
     loosest = max(params.bound_tolerance, params.gap_tolerance)
     grid = lay_grid(place.box, place.plane, cut.masks, views, valid, loosest, params.longest_side)
-    height = height_above(place.plane, grid)
     fused_as = make_params(FuseObjectParams, fusion)
     paths = {path.name.removesuffix(".zarr.zip"): path for path in depth}
     rule, corners, own = make_rule(TrustRule, params), place.box.corners(), {}
@@ -90,15 +96,6 @@ def run(
     clip = limit_clip_distance(
         max(2.0, share * fused_as.clip_distance), place.figures["thickness"], share * fused_as.thickness_share, voxel
     )
-    hulls = measure_hull(
-        cut.masks,
-        views,
-        valid,
-        grid,
-        may_be_hull(height, grid),
-        ramp=clip / grid.spacing,
-        tolerances=(params.hull_tolerance, params.bound_tolerance, params.gap_tolerance),
-    )
     fused = start_fusion(
         grid,
         clip,
@@ -108,17 +105,36 @@ def run(
     )
     for name, view in job.progress.track(views.items(), "keyframe", len(views)):
         fused.add(view, read_depth_map(paths[name]).depth, own[name])
-    sdf = complete_depth(fused, *hulls, sureness, height > 0, cut.masks, views, make_rule(HullRule, params))
-    if not (sdf < 0).any():
+    shaping = make_rule(ShapeRule, params, complete=make_rule(HullRule, params))
+    height = height_above(place.plane, grid)
+    surface = shape_surface(fused, clip, sureness, height, cut.masks, views, valid, shaping)
+    if surface is not None and params.frames:
+        learnt, drawn = (
+            read_appearance(appearance),
+            {name: draw_silhouette(surface, view) for name, view in frames.items()},
+        )
+        cut_as = make_params(SegmentParams, segmentation)
+        refine = make_rule(
+            RefineRule,
+            cut_as,
+            silhouette_weight=params.outline_weight,
+            label_weight=0.0,
+            pair_weight=cut_as.refine_pair_weight,
+            contrast=cut_as.refine_contrast,
+        )
+        outlines = {}
+        for name, view in job.progress.track(frames.items(), "frame", len(frames)):
+            reach = pixels_at(place.box, view, params.outline_ramp * voxel)
+            outlines[name] = mask_frame(view, images.image(name), valid[name], drawn[name], reach, learnt, refine)
+        surface = shape_surface(fused, clip, sureness, height, outlines, frames, valid, shaping) or surface
+    if surface is None:
         raise UserError(
             f"{labels}: expected masks that agree on where the object is, found that no place lies inside of enough of "
             "them; raise surface.bound_tolerance and surface.gap_tolerance, or use fused_sdf."
         )
-    sdf = close_pits(sdf, params.closing * (1 - sureness))
-    alone = mask_field(sdf, np.ones(grid.shape, bool), height, grid.spacing, params.medians)
-    surface = smooth_mesh(extract_surface(alone, grid), params.smoothing_steps, params.smoothing_contrast)
     seen_by = list(views.values())
-    write_colored_mesh(mesh, surface, color_vertices(surface, seen_by, images.image, valid.__getitem__))
+    samples = sample_vertices(surface, seen_by, images.image, valid.__getitem__)
+    write_colored_mesh(mesh, surface, color_vertices(surface, samples), {"confirmed": confirm_vertices(samples)})
     job.progress.note(f"{method}: depth is sure by {sureness:.2f}; {len(surface.faces)} triangles")
     posed = read_poses(poses)
     whole = {view.name: view for view in posed.views}

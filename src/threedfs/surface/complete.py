@@ -25,6 +25,7 @@ class HullRule:
     hull_trust: float
     sure_hull_trust: float
     gap_views: int
+    gap_share: float
 
 
 def complete_depth(
@@ -60,8 +61,10 @@ def complete_depth(
     rule : HullRule
     """
 
+    least_views = max(rule.gap_views, round(rule.gap_share * len(views)))
+
     def gaps_of(field):
-        return find_gaps((field < 0) & above, filler, above, masks, views, fused.grid, rule.gap_views)
+        return find_gaps((field < 0) & above, filler, above, masks, views, fused.grid, least_views)
 
     fused.add_field(hull, (1 - sureness) * rule.hull_trust + sureness * rule.sure_hull_trust)
     gaps = gaps_of(np.maximum(fused.result()[0], bound))

@@ -1,4 +1,4 @@
-"""Colours of vertices on a ball with a red and a blue half, and a wall that hides a part of it."""
+"""Exact: colours of vertices on a ball of a red and a blue half behind a plate, and how many views confirm them."""
 
 import numpy as np
 import pytest
@@ -7,7 +7,7 @@ import trimesh
 from threedfs.geometry.projection import backproject_map
 from threedfs.geometry.raycast import RayCaster
 from threedfs.geometry.rigid import look_at
-from threedfs.paint.vertices import color_vertices, vertex_normals
+from threedfs.texture.vertices import ABSENT, color_vertices, confirm_vertices, sample_vertices, vertex_normals
 from threedfs.types import Camera, Mesh, View
 
 CAMERA = Camera(160, 160, 200.0, 200.0, 79.5, 79.5)
@@ -36,9 +36,13 @@ def photograph(mesh, view):
     return np.where((hits.triangle >= 0)[:, None], image, TABLE).reshape(*CAMERA.shape, 3).astype(np.uint8)
 
 
-def paint(mesh, images, valid=None):
+def sample(mesh, images, valid=None):
     whole = np.ones(CAMERA.shape, bool)
-    return color_vertices(mesh, VIEWS, images.__getitem__, lambda name: whole if valid is None else valid[name])
+    return sample_vertices(mesh, VIEWS, images.__getitem__, lambda name: whole if valid is None else valid[name])
+
+
+def paint(mesh, images, valid=None):
+    return color_vertices(mesh, sample(mesh, images, valid))
 
 
 @pytest.fixture(scope="module")
@@ -94,3 +98,46 @@ def test_no_view_of_anything_gives_grey(images):
 def test_normals_of_a_ball_point_outward():
     mesh = ball()
     assert (vertex_normals(mesh) * mesh.vertices).sum(axis=1).min() > 0.499
+
+
+def test_a_sample_is_the_pixel_that_shows_the_vertex_or_absent(images):
+    """Exact: a vertex on a view's side has the colour of its half there; one on the far side has none."""
+    mesh = ball()
+    samples = sample(mesh, images)
+    assert samples.shape == (len(VIEWS), len(mesh.vertices), 3)
+    for view, found in zip(VIEWS, samples, strict=True):
+        toward = mesh.vertices @ view.centre / np.linalg.norm(view.centre)
+        assert (found[toward < 0] == ABSENT).all()
+        # at half the radius and more, the ray is within 60 degrees of the normal
+        near = (toward > 0.3) & (np.abs(mesh.vertices[:, 0]) > 0.05)
+        np.testing.assert_array_equal(found[near], np.where(mesh.vertices[near, :1] > 0, RED, BLUE))
+
+
+def test_a_lower_cosine_lets_a_view_see_more(images):
+    """Property: from a grazing angle on, a view sees all that it sees squarely, and more."""
+    mesh, valid = ball(), np.ones(CAMERA.shape, bool)
+    few, many = (
+        sample_vertices(mesh, VIEWS, images.__getitem__, lambda name: valid, cosine) < ABSENT for cosine in (0.5, 0.1)
+    )
+    assert (many | ~few).all() and many.sum() > 1.2 * few.sum()
+
+
+def test_a_vertex_is_confirmed_where_all_views_agree_and_not_where_none_sees_it(images):
+    """Exact: 1 where a half is seen, away from the other; 0 below, where no view looks."""
+    mesh = ball()
+    samples = sample(mesh, images)
+    confirmed = confirm_vertices(samples)
+    seen = (samples[..., 0] < ABSENT).any(axis=0)
+    sure = seen & (np.abs(mesh.vertices[:, 0]) > 0.05)
+    assert confirmed.dtype == np.float32 and sure.mean() > 0.5 and (confirmed[sure] == 1).all()
+    assert (~seen).any() and (confirmed[~seen] == 0).all()
+
+
+def test_a_vertex_is_not_confirmed_where_every_other_view_shows_something_else(images):
+    """Property: what most views show agrees with itself, so that the share is about a half, and never near 1."""
+    mesh = ball()
+    painted_over = images | {view.name: np.full_like(images[view.name], 255) for view in VIEWS[::2]}
+    samples = sample(mesh, painted_over)
+    by_both = ((samples[::2, :, 0] < ABSENT).any(axis=0)) & ((samples[1::2, :, 0] < ABSENT).any(axis=0))
+    confirmed = confirm_vertices(samples)[by_both]
+    assert by_both.mean() > 0.4 and confirmed.max() < 0.7 and confirmed.mean() < 0.5

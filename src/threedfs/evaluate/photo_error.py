@@ -1,0 +1,47 @@
+"""How close a picture of a coloured mesh comes to a photograph of the object."""
+
+from __future__ import annotations
+
+import numpy as np
+from skimage.metrics import structural_similarity
+
+_PEAK = 255.0
+
+
+def match_exposure(picture: np.ndarray, photo: np.ndarray, where: np.ndarray) -> np.ndarray:
+    """Return the picture (H, W, 3) by the one gain and offset that bring it closest to the photo where it counts."""
+    x, y = picture[where].ravel().astype(np.float64), photo[where].ravel().astype(np.float64)
+    spread = x.var()
+    gain = ((x - x.mean()) * (y - y.mean())).mean() / spread if spread > 0 else 1.0
+    return gain * picture + (y.mean() - gain * x.mean())
+
+
+def measure_photo(picture: np.ndarray, photo: np.ndarray, where: np.ndarray) -> tuple[float, float]:
+    """Return PSNR in dB and SSIM of a picture against a photograph, over the pixels that show the object.
+
+    Parameters
+    ----------
+    picture : (H, W, 3) float32
+    photo : (H, W, 3) uint8
+    where : (H, W) bool
+        Pixels that count; SSIM's windows see the two equal in all others.
+
+    Returns
+    -------
+    tuple of float
+        After one gain and one offset for the whole picture. PSNR is infinite where nothing differs.
+    """
+    matched = np.where(where[..., None], np.clip(match_exposure(picture, photo, where), 0, _PEAK), photo)
+    error = float(((matched[where] - photo[where]) ** 2).mean())
+    similar = structural_similarity(
+        matched,
+        photo.astype(np.float64),
+        data_range=_PEAK,
+        channel_axis=2,
+        gaussian_weights=True,
+        sigma=1.5,
+        use_sample_covariance=False,
+        full=True,
+    )[1]
+    psnr = 10 * np.log10(_PEAK**2 / error) if error > 0 else np.inf
+    return float(psnr), float(similar[where].mean())

@@ -1,0 +1,35 @@
+"""Parameters of the texture stage."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from threedfs.params.field import parameter
+
+
+@dataclass(frozen=True)
+class TextureParams:
+    """How the mesh is simplified and painted from the photographs."""
+
+    tolerance: float = parameter(
+        0.001,
+        "distance that the simplified mesh may lie from the mesh; 0 keeps all faces",
+        unit="diagonal of the mesh's box",
+        minimum=0.0,
+        maximum=0.1,
+    )
+    views: int = parameter(
+        200, "most photographs painted from, at uniform steps of those there are", minimum=1, maximum=254
+    )
+    held_out_step: int = parameter(
+        10, "every so many photographs one is left out, to compare pictures of the mesh with; 0 for none", minimum=0
+    )
+    color_scale: float = parameter(
+        15.0,
+        "difference of a photograph from the median of all that costs as much as showing a face with no area",
+        unit="grey level",
+        exclusive_minimum=0.0,
+    )
+    seam_cost: float = parameter(
+        0.5, "cost of a seam along a mean edge, in costs of showing a mean face with no area", minimum=0.0
+    )

@@ -1,0 +1,123 @@
+"""Colours of a mesh's vertices, from the photographs that see them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from scipy.sparse import coo_array
+
+from threedfs.geometry.projection import project
+from threedfs.geometry.raycast import RayCaster
+from threedfs.geometry.vectors import dot, normalise
+from threedfs.types import Mesh, View
+
+SQUARE, GRAZING = 0.3, 0.1
+"""Cosines between a vertex's normal and the ray to a camera: from the first, the camera shows the vertex rather than
+the edge there; from the second, it sees it at all."""
+_LIFT = 1e-3
+"""How far a ray starts from its vertex, lengths of the mesh's box: beyond the faces that meet there."""
+_AGREE = 16.0
+"""Levels by which a photograph that confirms a vertex may differ from the median of all."""
+ABSENT = 256
+"""What a sample has where a view does not see the vertex."""
+Reader = Callable[[str], np.ndarray]
+
+
+def sample_vertices(
+    mesh: Mesh, views: Sequence[View], read_image: Reader, read_valid: Reader, least_cosine: float = SQUARE
+) -> np.ndarray:
+    """Return the colour that each view has of each vertex: (views, V, 3) uint16, ABSENT where it does not see it.
+
+    Parameters
+    ----------
+    mesh : Mesh
+        World.
+    views : sequence of View
+    read_image, read_valid : callable
+        Give the image (H, W, 3) uint8 RGB of a view by its name, and which pixels (H, W) bool show the scene.
+    least_cosine : float
+        Between a vertex's normal and the ray to a camera, from which the camera sees it.
+    """
+    caster, normals = RayCaster(mesh), vertex_normals(mesh)
+    lifted = mesh.vertices + _LIFT * float(np.ptp(mesh.vertices, axis=0).max()) * normals
+    samples = np.full((len(views), len(mesh.vertices), 3), ABSENT, np.uint16)
+    for rank, view in enumerate(views):
+        rays = view.centre - mesh.vertices
+        seen = np.flatnonzero(dot(normals, normalise(rays)) > least_cosine)
+        pixels, depth = project(view, mesh.vertices[seen])
+        image, valid = read_image(view.name), read_valid(view.name)
+        column, row = np.rint(pixels).T
+        shown = (depth > 0) & (row >= 0) & (column >= 0) & (row < valid.shape[0]) & (column < valid.shape[1])
+        seen, row, column = seen[shown], row[shown].astype(np.int64), column[shown].astype(np.int64)
+        clear = valid[row, column] & ~caster.is_blocked(lifted[seen], rays[seen])
+        samples[rank, seen[clear]] = image[row[clear], column[clear]]
+    return samples
+
+
+def color_vertices(mesh: Mesh, samples: np.ndarray) -> np.ndarray:
+    """Return the colour (V, 3) uint8 of each vertex: the median over the views that see it, in each channel.
+
+    Not in the paper. A median, as a highlight or an outline a pixel aside is in few views. A vertex that no view sees
+    has the mean colour of the nearest ones along the mesh that are seen; a piece of which none is seen is grey.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    samples : (views, V, 3) uint16
+        As `sample_vertices` returns them.
+    """
+    middle, count = median_samples(samples)
+    return np.clip(np.rint(spread_colors(mesh, middle, count > 0)), 0, 255).astype(np.uint8)
+
+
+def median_samples(samples: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the median sample of each vertex in each channel, (V, 3) uint16, and how many views see it, (V,)."""
+    count = (samples[..., 0] < ABSENT).sum(axis=0)
+    ordered = np.sort(samples, axis=0)
+    last = np.maximum(count - 1, 0)
+    low, high = (np.take_along_axis(ordered, rank[None, :, None], axis=0)[0] for rank in (last // 2, (last + 1) // 2))
+    return (low + high + 1) // 2, count
+
+
+def confirm_vertices(samples: np.ndarray) -> np.ndarray:
+    """Return the share (V,) float32 of the views that see a vertex which agree on its colour; 0 where none sees it.
+
+    Where the surface is wrong, or shines, each view sees something else at a vertex.
+
+    Parameters
+    ----------
+    samples : (views, V, 3) uint16
+        As `sample_vertices` returns them.
+    """
+    middle, count = median_samples(samples)
+    apart = np.abs(samples.astype(np.float32) - middle).mean(axis=2)
+    agree = ((apart <= _AGREE) & (samples[..., 0] < ABSENT)).sum(axis=0)
+    return (agree / np.maximum(count, 1)).astype(np.float32)
+
+
+def vertex_normals(mesh: Mesh) -> np.ndarray:
+    """Return the outward unit normal (V, 3) at each vertex, the mean of its faces' weighed by their areas."""
+    a, b, c = (mesh.vertices[mesh.faces[:, corner]] for corner in range(3))
+    across = np.cross(b - a, c - a)
+    total = np.zeros_like(mesh.vertices)
+    for axis in range(3):
+        for corner in range(3):
+            total[:, axis] += np.bincount(mesh.faces[:, corner], across[:, axis], len(total))
+    return normalise(total)
+
+
+def spread_colors(mesh: Mesh, colors: np.ndarray, known: np.ndarray) -> np.ndarray:
+    """Return colours (V, 3) float64, handed on from known vertices to their neighbours, ring by ring; else grey."""
+    colors = np.where(known[:, None], colors, 0.0)
+    pairs = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]])
+    pairs = np.concatenate([pairs, pairs[:, ::-1]])
+    beside = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(colors),) * 2).tocsr()
+    while True:
+        weight = beside @ known.astype(np.float64)
+        reached = ~known & (weight > 0)
+        if not reached.any():
+            break
+        colors[reached] = (beside @ colors)[reached] / weight[reached, None]
+        known = known | reached
+    return np.where(known[:, None], colors, 128.0)
