@@ -3,7 +3,7 @@
     python docs/make_pictures.py results/sample docs/pictures/sample.jpg [MASKS_OF MESH_OF]
 
 Four keyframes side by side; from top to bottom the crop with the mask's outline, the depth (near is red), the
-normals of the depth, the mesh as the same camera sees it, and the same in colour if it has colours. Masks are those of
+normals of the depth, the mesh as the same camera sees it, and the same with its texture, or else its colours, if any. Masks are those of
 gc_2d3d_pixel and the mesh that of surface where no methods are named.
 """
 
@@ -21,7 +21,10 @@ from threedfs.io.colored_meshes import read_colored_mesh
 from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_depth_map
 from threedfs.io.keyframes import read_keyframes
+from threedfs.io.meshes import read_mesh
+from threedfs.io.textured_meshes import read_textured_obj
 from threedfs.io.volumes import read_silhouettes
+from threedfs.texture.photograph import Photographer, photograph_texture, photograph_vertices
 from threedfs.types import Keyframe, Mesh
 
 COLUMNS, WIDTH = 4, 1400
@@ -52,8 +55,17 @@ def colour_normals(normals: np.ndarray) -> np.ndarray:
     return (np.nan_to_num(normals * [0.5, 0.5, -0.5] + 0.5) * 255).clip(0, 255).astype(np.uint8)
 
 
-def render(mesh: Mesh, colors: np.ndarray | None, keyframe: Keyframe) -> list[np.ndarray]:
-    """Render the mesh with one lamp beside the camera; if its vertices have colours, in them without a lamp, too."""
+def find_photographer(folder: Path) -> Photographer | None:
+    """Return what photographs a method's mesh with its texture, or else its vertices' colours; None without any."""
+    textured = folder / "textured" / "mesh.obj"
+    if textured.is_file():
+        return photograph_texture(read_textured_obj(textured))
+    mesh, colors = read_colored_mesh(folder / "mesh.ply")
+    return None if colors is None else photograph_vertices(mesh, colors)
+
+
+def render(mesh: Mesh, keyframe: Keyframe) -> np.ndarray:
+    """Render the mesh with one lamp beside the camera."""
     view, camera = keyframe.view, keyframe.view.camera
     u, v = pixel_grid(camera)
     rotation = view.cam_from_world[:3, :3]
@@ -65,11 +77,13 @@ def render(mesh: Mesh, colors: np.ndarray | None, keyframe: Keyframe) -> list[np
     triangle = hits.triangle.reshape(u.shape)
     facing = (normals[np.maximum(triangle, 0)] @ rotation.T) @ np.array([-0.3, -0.4, -0.85])
     grey = np.where(triangle >= 0, np.clip(facing, 0.08, 1) * 255, 30).astype(np.uint8)
-    rendered = [np.repeat(grey[..., None], 3, axis=-1)]
-    if colors is not None:
-        shown = (colors[mesh.faces[hits.triangle]] * hits.weights[..., None]).sum(axis=1).reshape(*u.shape, 3)
-        rendered.append(np.where(triangle[..., None] >= 0, shown, 30).astype(np.uint8))
-    return rendered
+    return np.repeat(grey[..., None], 3, axis=-1)
+
+
+def photograph(photographer: Photographer, keyframe: Keyframe) -> np.ndarray:
+    """Photograph the mesh before dark grey."""
+    image, shown = photographer.take(keyframe.view)
+    return np.where(shown[..., None], image.clip(0, 255), 30).astype(np.uint8)
 
 
 def fit(image: np.ndarray, width: int, height: int) -> np.ndarray:
@@ -88,7 +102,8 @@ def main(results: Path, picture: Path, masks: str = "gc_2d3d_pixel", surface: st
     crops = read_crops(results / "04_crops/crops.zarr.zip")
     keyframes = read_keyframes(results / "04_crops/keyframes.json")
     silhouettes = read_silhouettes(results / f"11_object/{masks}/silhouettes.zarr.zip")
-    mesh, colors = read_colored_mesh(results / f"11_object/{surface}/mesh.ply")
+    folder = results / "11_object" / surface
+    mesh, photographer = read_mesh(folder / "mesh.ply"), find_photographer(folder)
     names = list(keyframes)
     width, columns = WIDTH // COLUMNS, []
     for name in names[:: max(1, len(names) // COLUMNS)][:COLUMNS]:
@@ -98,7 +113,8 @@ def main(results: Path, picture: Path, masks: str = "gc_2d3d_pixel", surface: st
             outline(crops.image(name), silhouettes[name]),
             colour_depth(depth, keyframe),
             colour_normals(normals_from_depth(keyframe.view.camera, depth)),
-            *render(mesh, colors, keyframe),
+            render(mesh, keyframe),
+            *([photograph(photographer, keyframe)] if photographer else []),
         ]
         columns.append(np.vstack([fit(row, width, width) for row in rows]))
     cv2.imwrite(str(picture), np.hstack(columns)[..., ::-1], [cv2.IMWRITE_JPEG_QUALITY, 88])

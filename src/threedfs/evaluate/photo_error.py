@@ -9,10 +9,10 @@ _PEAK = 255.0
 
 
 def match_exposure(picture: np.ndarray, photo: np.ndarray, where: np.ndarray) -> np.ndarray:
-    """Return the picture (H, W, 3) by the one gain and offset that bring it closest to the photo where it counts."""
+    """Return the picture (H, W, 3) by the one gain, not below 0, and offset that bring it closest to the photo."""
     x, y = picture[where].ravel().astype(np.float64), photo[where].ravel().astype(np.float64)
     spread = x.var()
-    gain = ((x - x.mean()) * (y - y.mean())).mean() / spread if spread > 0 else 1.0
+    gain = max(0.0, ((x - x.mean()) * (y - y.mean())).mean() / spread) if spread > 0 else 1.0
     return gain * picture + (y.mean() - gain * x.mean())
 
 

@@ -7,32 +7,33 @@ from pathlib import Path
 import numpy as np
 import trimesh
 from PIL import Image
-from trimesh.exchange.obj import export_obj
-from trimesh.visual.material import PBRMaterial, SimpleMaterial
+from trimesh.visual.material import PBRMaterial
 
 from threedfs.errors import UserError
 from threedfs.io.atomic import atomic
 from threedfs.io.meshes import read_mesh
 from threedfs.texture.textured import TexturedMesh
-
-_DIGITS = 9
-_HEADER = "made by threedfs"
+from threedfs.types import Mesh
 
 
 def write_textured_obj(path: Path, textured: TexturedMesh) -> None:
-    """Write NAME.obj, and beside it NAME.mtl and NAME.png, which it refers to."""
-    material = SimpleMaterial(name=path.stem, image=Image.fromarray(textured.image), diffuse=(255, 255, 255))
-    text, files = export_obj(
-        _assemble(textured, material),
-        include_normals=False,
-        return_texture=True,
-        digits=_DIGITS,
-        mtl_name=f"{path.stem}.mtl",
-        header=_HEADER,
-    )
-    for name, data in {path.name: text, **files}.items():
-        with atomic(path.with_name(name)) as temporary:
-            temporary.write_bytes(data.encode() if isinstance(data, str) else data)
+    """Write NAME.obj, and beside it NAME.mtl and NAME.png, which it refers to.
+
+    Vertices and places in the picture have indices of their own, so that the mesh is not cut along the charts.
+    """
+    places, corner = np.unique(textured.corners.reshape(-1, 2), axis=0, return_inverse=True)
+    pairs = np.stack([textured.mesh.faces.ravel(), corner.ravel()], axis=1).reshape(-1, 6) + 1
+    lines = [f"# made by threedfs\nmtllib {path.stem}.mtl\nusemtl {path.stem}"]
+    lines += [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in textured.mesh.vertices]
+    lines += [f"vt {u:.9g} {v:.9g}" for u, v in _scale_places(places, textured.image)]
+    lines += [f"f {a}/{at} {b}/{bt} {c}/{ct}" for a, at, b, bt, c, ct in pairs]
+    material = f"newmtl {path.stem}\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nillum 1\nmap_Kd {path.stem}.png\n"
+    with atomic(path) as temporary:
+        temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    with atomic(path.with_suffix(".mtl")) as temporary:
+        temporary.write_text(material, encoding="utf-8")
+    with atomic(path.with_suffix(".png")) as temporary:
+        Image.fromarray(textured.image).save(temporary, format="png")
 
 
 def write_textured_glb(path: Path, textured: TexturedMesh) -> None:
@@ -48,14 +49,14 @@ def write_textured_glb(path: Path, textured: TexturedMesh) -> None:
 
 
 def read_textured_obj(path: Path) -> TexturedMesh:
-    """Read what `write_textured_obj` wrote.
+    """Read what `write_textured_obj` wrote; vertices at one place are one, as trimesh cuts the mesh along the charts.
 
     Raises
     ------
     UserError
         As `threedfs.io.meshes.read_mesh`, or if there is no picture on the mesh.
     """
-    mesh = read_mesh(path)
+    cut = read_mesh(path)
     visual = trimesh.load(path, force="mesh", process=False).visual
     image = getattr(getattr(visual, "material", None), "image", None)
     if image is None or not path.with_suffix(".mtl").is_file():  # without it trimesh makes up a grey picture
@@ -66,20 +67,23 @@ def read_textured_obj(path: Path) -> TexturedMesh:
     texels = np.asarray(image.convert("RGB"))
     height, width = texels.shape[:2]
     places = np.stack([visual.uv[:, 0] * width, (1 - visual.uv[:, 1]) * height], axis=1) - 0.5
-    return TexturedMesh(mesh, places[mesh.faces], texels)
+    vertices, joined = np.unique(cut.vertices, axis=0, return_inverse=True)
+    return TexturedMesh(Mesh(vertices, joined.ravel()[cut.faces]), places[cut.faces], texels)
 
 
-def _assemble(textured: TexturedMesh, material: SimpleMaterial | PBRMaterial) -> trimesh.Trimesh:
-    """Return the mesh for trimesh: vertices once for each place in the picture, u to the right and v up in [0, 1]."""
+def _scale_places(places: np.ndarray, image: np.ndarray) -> np.ndarray:
+    """Return places (N, 2) in texels, columns and rows, as u to the right and v up in [0, 1]."""
+    height, width = image.shape[:2]
+    u, v = ((places + 0.5) / [width, height]).T
+    return np.stack([u, 1 - v], axis=1)
+
+
+def _assemble(textured: TexturedMesh, material: PBRMaterial) -> trimesh.Trimesh:
+    """Return the mesh for trimesh, vertices once for each place in the picture."""
     faces = textured.mesh.faces
-    height, width = textured.image.shape[:2]
     keys = np.concatenate([faces.reshape(-1, 1), textured.corners.reshape(-1, 2)], axis=1)
     kept, corner = np.unique(keys, axis=0, return_inverse=True)
-    places = (kept[:, 1:] + 0.5) / [width, height]
-    made = trimesh.Trimesh(
-        textured.mesh.vertices[kept[:, 0].astype(np.int64)], corner.reshape(faces.shape), process=False
-    )
-    made.visual = trimesh.visual.TextureVisuals(
-        uv=np.stack([places[:, 0], 1 - places[:, 1]], axis=1), material=material
-    )
+    vertices = textured.mesh.vertices[kept[:, 0].astype(np.int64)]
+    made = trimesh.Trimesh(vertices, corner.reshape(faces.shape), process=False)
+    made.visual = trimesh.visual.TextureVisuals(uv=_scale_places(kept[:, 1:], textured.image), material=material)
     return made

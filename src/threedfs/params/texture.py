@@ -13,7 +13,7 @@ class TextureParams:
 
     tolerance: float = parameter(
         0.001,
-        "distance that the simplified mesh may lie from the mesh; 0 keeps all faces",
+        "distance by which a vertex may lie off the faces that replace it; 0 keeps all faces",
         unit="diagonal of the mesh's box",
         minimum=0.0,
         maximum=0.1,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from threedfs.errors import UserError
 from threedfs.io.crops import read_crops
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
@@ -37,6 +38,11 @@ def run(
 
     Not in the paper. Some photographs are left out, for the figures that compare them with pictures of the painted
     mesh; painted.json beside the OBJ names them.
+
+    Raises
+    ------
+    UserError
+        If no photograph is left to paint from.
     """
     full, images = read_mesh(mesh), read_crops(crops)
     simple = simplify_mesh(full, params.tolerance) if params.tolerance else full
@@ -49,6 +55,11 @@ def run(
     names = [name for name in images.names if name in views]
     held = hold_out(names, params.held_out_step)
     painters = spread_views([views[name] for name in names if name not in held], params.views)
+    if not painters:
+        raise UserError(
+            f"{crops}: expected photographs to paint the mesh from, found {len(names)}, of which {len(held)} are held "
+            "out; raise texture.held_out_step, or set it to 0."
+        )
     painting = paint_mesh(simple, painters, images.image, images.valid_of, make_rule(ChoiceRule, params))
     painted = painting.textured
     write_textured_obj(textured / "mesh.obj", painted)

@@ -2,31 +2,36 @@
 
 from __future__ import annotations
 
+import warnings
+
 import numpy as np
 
 from threedfs.texture.vertices import ABSENT, median_samples
 
 _ROUNDS = 2
+_LEAST = 8
+"""Level below which a sample tells no ratio."""
 _PEAK = 255
 
 
 def find_gains(samples: np.ndarray) -> np.ndarray:
-    """Return the gain (views, 3) of each view's red, green and blue that brings it closest to the median of all.
+    """Return the gain (views, 3) of each view's red, green and blue that brings it to the median of all.
 
-    A phone changes its exposure while it films. The mean gain is 1.
+    A phone changes its exposure while it films. The median ratio counts, as a highlight or a thing in between is a
+    part of a view. The mean gain is 1.
 
     Parameters
     ----------
     samples : (views, V, 3) uint16
         As `sample_vertices` returns them.
     """
-    known = samples < ABSENT
-    levels = np.where(known, samples, 0).astype(np.float64)
+    levels = np.where((samples >= _LEAST) & (samples < ABSENT), samples, np.nan)
     gains = np.ones((len(samples), 3))
     for _ in range(_ROUNDS):
         middle = median_samples(apply_gains(samples, gains))[0]
-        both, own = (levels * middle * known).sum(axis=1), (levels**2).sum(axis=1)
-        gains = np.where(own > 0, both / np.maximum(own, 1), 1.0)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", RuntimeWarning)  # a view that sees nothing has no median: gain 1
+            gains = np.nanmedian(middle / levels, axis=1)
         gains = np.where(gains > 0, gains, 1.0)
         gains /= gains.mean(axis=0)
     return gains

@@ -10,6 +10,7 @@ from scipy.sparse import coo_array, eye_array
 from scipy.sparse.linalg import splu
 
 from threedfs.geometry.projection import project
+from threedfs.object.silhouettes import draw_silhouette
 from threedfs.texture.vertices import Reader, spread_colors
 from threedfs.types import Mesh, View
 
@@ -58,11 +59,18 @@ def _sample(mesh: Mesh, views: Sequence[View], vertex: np.ndarray, rank: np.ndar
     for each in np.unique(rank):
         own = np.flatnonzero(rank == each)
         pixels = project(views[each], mesh.vertices[vertex[own]])[0].astype(np.float32)
-        image = cv2.GaussianBlur(read_image(views[each].name), (0, 0), _BLUR).astype(np.float32)
+        image = _blur_inside(read_image(views[each].name), draw_silhouette(mesh, views[each]))
         for block in np.array_split(np.arange(len(own)), len(own) // 30_000 + 1):  # cv2.remap takes 32,767 rows
             places = pixels[block, None]
             colors[own[block]] = cv2.remap(image, places, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)[:, 0]
     return colors
+
+
+def _blur_inside(image: np.ndarray, inside: np.ndarray) -> np.ndarray:
+    """Return the blurred image (H, W, 3) float32 of what is inside an outline: what surrounds it takes no part."""
+    weight = inside.astype(np.float32)
+    total = cv2.GaussianBlur(image * weight[..., None], (0, 0), _BLUR)
+    return total / np.maximum(cv2.GaussianBlur(weight, (0, 0), _BLUR), 1e-3)[..., None]
 
 
 def _solve(vertex: np.ndarray, node: np.ndarray, colors: np.ndarray) -> np.ndarray:

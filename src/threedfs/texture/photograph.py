@@ -35,6 +35,8 @@ class Photographer:
         camera = view.camera
         image, shown = np.zeros((*camera.shape, 3), np.float32), np.zeros(camera.shape, bool)
         pixels = project(view, self._vertices)[0]
+        if not np.isfinite(pixels).any():
+            return image, shown
         low = np.clip(np.floor(np.nanmin(pixels, axis=0)), 0, [camera.width, camera.height]).astype(int)
         high = np.clip(np.ceil(np.nanmax(pixels, axis=0)) + 1, 0, [camera.width, camera.height]).astype(int)
         v, u = np.mgrid[low[1] : high[1], low[0] : high[0]]
