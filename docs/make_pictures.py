@@ -3,7 +3,8 @@
     python docs/make_pictures.py results/sample docs/pictures/sample.jpg [MASKS_OF MESH_OF]
 
 Four keyframes side by side; from top to bottom the crop with the mask's outline, the depth (near is red), the
-normals of the depth, the mesh as the same camera sees it, and the same with its texture, or else its colours, if any. Masks are those of
+normals of the depth, the mesh as the same camera sees it, and the same with
+its texture, or else its colours, if any. Masks are those of
 gc_2d3d_pixel and the mesh that of surface where no methods are named.
 """
 

@@ -84,13 +84,13 @@ def find_gaps(
     hull : (nx, ny, nz) float32
         The masks' hull, negative inside.
     """
-    places = np.flatnonzero(allowed)
+    places = np.flatnonzero(allowed & (hull < 0))
     centres = voxel_places(grid, places)
     filled = np.zeros(grid.shape, bool)
     if not len(places):
         return filled
-    own = centres[solid.reshape(-1)[places]]
-    middle = np.append((own if len(own) else centres).mean(axis=0), 1)
+    own = np.flatnonzero(allowed & solid)
+    middle = np.append((voxel_places(grid, own) if len(own) else centres).mean(axis=0), 1)
     covered = draw_voxels(solid, grid, views)
     gaps = []
     for name, view in views.items():
@@ -104,7 +104,7 @@ def find_gaps(
         gaps.append(_Gap(voxels, wide[row[voxels], column[voxels]]))
     apart = ndimage.distance_transform_edt(~solid) if solid.any() else np.full(grid.shape, np.inf)
     near = apart.reshape(-1)[places] <= _REACH
-    filled.reshape(-1)[places] = _fill_gaps(gaps, hull.reshape(-1)[places] < 0, near, least_views)
+    filled.reshape(-1)[places] = _fill_gaps(gaps, near, least_views)
     return filled
 
 
@@ -116,13 +116,13 @@ class _Gap:
     wide: np.ndarray
 
 
-def _fill_gaps(gaps: list[_Gap], allowed: np.ndarray, near: np.ndarray, least_views: int) -> np.ndarray:
+def _fill_gaps(gaps: list[_Gap], near: np.ndarray, least_views: int) -> np.ndarray:
     """Say which voxels (N,) fill gaps that `least_views` views show them on: any gap if they are near, or wide ones."""
-    any_gap, wide = np.zeros(len(allowed), np.int16), np.zeros(len(allowed), np.int16)
+    any_gap, wide = np.zeros(len(near), np.int16), np.zeros(len(near), np.int16)
     for gap in gaps:
         any_gap[gap.voxels] += 1
         wide[gap.voxels] += gap.wide
-    return allowed & (near & (any_gap >= least_views) | (wide >= least_views))
+    return near & (any_gap >= least_views) | (wide >= least_views)
 
 
 @njit(cache=True)
