@@ -20,8 +20,8 @@ _BYTES_PER_VOXEL = {
 }
 """At most, over a cube: the highest peaks of the benchmark's jobs are 0.37 to 0.72 of what these give."""
 
-_BYTES_PER_PIXEL = {"segment": 80, "volumetric_cut": 20}
-"""Of every keyframe, which these stages hold all at once."""
+_BYTES_PER_PIXEL = {"segment": 80, "surface": 12, "volumetric_cut": 20}
+"""Of every keyframe, which these stages hold all at once; surface holds masks of three times as many frames."""
 
 
 def estimate_memory(stage: str, longest_side: int, pixels: float = 0, keyframes: int = 0, unknowns: int = 0) -> int:

@@ -256,3 +256,10 @@ def test_masks_by_the_surface_so_far_mend_those_of_the_segmentation(table, tmp_p
         found.append(agreement(tmp_path, table))
     assert found[1] > found[0] + 0.02 and found[1] > found[2]
     assert len(set(meshes)) == 3
+
+
+def test_where_the_second_masks_are_empty_the_first_surface_stays(right, table, monkeypatch):
+    """Property: masks by the surface so far that show nothing do not make everything solid."""
+    first = work(right, frames=0)[1][0]
+    monkeypatch.setattr(surface, "mask_frame", lambda view, *_: np.zeros(view.camera.shape, bool))
+    assert work(right)[1][0] == first

@@ -61,10 +61,11 @@ def test_a_mesh_that_is_not_in_the_picture_leaves_it_empty():
 
 
 @pytest.mark.parametrize(
-    ("count", "step", "held"), [(10, 4, [2, 6]), (10, 3, [1, 4, 7]), (10, 10, [5]), (4, 10, []), (9, 0, [])]
+    ("count", "step", "held"),
+    [(12, 4, [2, 6, 10]), (10, 3, [1, 4, 7]), (29, 10, []), (30, 10, [5, 15, 25]), (9, 0, [])],
 )
-def test_one_of_every_so_many_is_held_out(count, step, held):
-    """Exact."""
+def test_one_of_every_so_many_is_held_out_of_many(count, step, held):
+    """Exact; none where there are fewer than three steps."""
     assert hold_out([str(number) for number in range(count)], step) == [str(number) for number in held]
 
 

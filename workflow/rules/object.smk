@@ -185,7 +185,10 @@ rule texture:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=2000,
+        # a mesh that is not simplified has ten times the vertices
+        mem_mb=lambda wildcards: (
+            2000 if settings_of("texture")(wildcards)["tolerance"] else 5000
+        ),
     params:
         code=code_of("texture"),
         settings=settings_of("texture"),

@@ -34,7 +34,7 @@ class TextureRecord:
 
 
 def write_texture(path: Path, record: TextureRecord, header: Mapping[str, Any]) -> None:
-    """Write texture.json."""
+    """Write painted.json."""
     write_document(path, TEXTURE, asdict(record), header)
 
 

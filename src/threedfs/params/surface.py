@@ -84,7 +84,10 @@ class SurfaceParams(SmoothingSettings):
         2, "least views that show a voxel of the hull where nothing solid is before it is filled", minimum=1
     )
     gap_share: float = parameter(
-        0.05, "share of the masks that these views must be, where that is more", minimum=0.0, maximum=1.0
+        0.05,
+        "share of the masks that show something which these views must be, where that is more",
+        minimum=0.0,
+        maximum=1.0,
     )
     closing: float = parameter(
         1.0,
@@ -100,7 +103,8 @@ class SurfaceParams(SmoothingSettings):
     )
     frames: int = parameter(
         60,
-        "frames whose masks the surface so far gives, to shape it once more; keyframes are among them; 0 for none",
+        "frames whose masks the surface so far gives, to shape it once more: all keyframes, and of their neighbours as "
+        "many as there is room for; 0 for none",
         minimum=0,
     )
     outline_weight: float = parameter(

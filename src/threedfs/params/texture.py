@@ -22,7 +22,10 @@ class TextureParams:
         200, "most photographs painted from, at uniform steps of those there are", minimum=1, maximum=254
     )
     held_out_step: int = parameter(
-        10, "every so many photographs one is left out, to compare pictures of the mesh with; 0 for none", minimum=0
+        10,
+        "every so many photographs one is left out, to compare pictures of the mesh with; of fewer than three times as "
+        "many none; 0 for none",
+        minimum=0,
     )
     color_scale: float = parameter(
         15.0,

@@ -109,10 +109,8 @@ def run(
     height = height_above(place.plane, grid)
     surface = shape_surface(fused, clip, sureness, height, cut.masks, views, valid, shaping)
     if surface is not None and params.frames:
-        learnt, drawn = (
-            read_appearance(appearance),
-            {name: draw_silhouette(surface, view) for name, view in frames.items()},
-        )
+        learnt, tracked = read_appearance(appearance), job.progress.track(frames.items(), "frame", len(frames))
+        reach = params.outline_ramp * voxel
         cut_as = make_params(SegmentParams, segmentation)
         refine = make_rule(
             RefineRule,
@@ -122,10 +120,18 @@ def run(
             pair_weight=cut_as.refine_pair_weight,
             contrast=cut_as.refine_contrast,
         )
-        outlines = {}
-        for name, view in job.progress.track(frames.items(), "frame", len(frames)):
-            reach = pixels_at(place.box, view, params.outline_ramp * voxel)
-            outlines[name] = mask_frame(view, images.image(name), valid[name], drawn[name], reach, learnt, refine)
+        outlines = {
+            name: mask_frame(
+                view,
+                images.image(name),
+                valid[name],
+                draw_silhouette(surface, view),
+                pixels_at(place.box, view, reach),
+                learnt,
+                refine,
+            )
+            for name, view in tracked
+        }
         surface = shape_surface(fused, clip, sureness, height, outlines, frames, valid, shaping) or surface
     if surface is None:
         raise UserError(

@@ -61,7 +61,8 @@ def complete_depth(
     rule : HullRule
     """
 
-    least_views = max(rule.gap_views, round(rule.gap_share * len(views)))
+    shown = sum(masks[name].any() for name in views)
+    least_views = max(rule.gap_views, round(rule.gap_share * shown))
 
     def gaps_of(field):
         return find_gaps((field < 0) & above, filler, above, masks, views, fused.grid, least_views)

@@ -42,7 +42,7 @@ def shape_surface(
     valid: Mapping[str, np.ndarray],
     rule: ShapeRule,
 ) -> Mesh | None:
-    """Return the closed surface that agrees with the depth fused so far and with masks; None if no place is inside.
+    """Return the closed surface that agrees with the depth fused so far and with masks; None if nothing is inside.
 
     Not in the paper.
 
@@ -60,6 +60,8 @@ def shape_surface(
         (H, W) bool, View, and (H, W) bool: pixels that show the scene.
     rule : ShapeRule
     """
+    if not any(masks[name].any() for name in views):
+        return None
     grid = fused.grid
     hulls = measure_hull(
         masks,
@@ -71,8 +73,8 @@ def shape_surface(
         tolerances=(rule.hull_tolerance, rule.bound_tolerance, rule.gap_tolerance),
     )
     sdf = complete_depth(deepcopy(fused), *hulls, sureness, height > 0, masks, views, rule.complete)
-    if not (sdf < 0).any():
-        return None
     sdf = close_pits(sdf, rule.closing * (1 - sureness))
     alone = mask_field(sdf, np.ones(grid.shape, bool), height, grid.spacing, rule.medians)
+    if not (alone < 0).any():
+        return None
     return smooth_mesh(extract_surface(alone, grid), rule.smoothing_steps, rule.smoothing_contrast)

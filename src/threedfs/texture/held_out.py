@@ -10,8 +10,12 @@ from threedfs.types import View
 
 
 def hold_out(names: Sequence[str], step: int) -> list[str]:
-    """Return one of every `step` names, from the middle of the first steps on; none if `step` is 0."""
-    return list(names[step // 2 :: step]) if step else []
+    """Return one of every `step` names, from the middle of the first steps on.
+
+    None if `step` is 0, or if there are fewer names than three steps: of a few photographs each may be the only one to
+    show a side.
+    """
+    return list(names[step // 2 :: step]) if 0 < 3 * step <= len(names) else []
 
 
 def spread_views(views: Sequence[View], most: int) -> list[View]:
