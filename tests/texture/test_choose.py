@@ -5,7 +5,8 @@ import pytest
 import trimesh
 from painted_ball import ball, everywhere, look_from, make_mesh, ring
 
-from threedfs.texture.choose import ChoiceRule, adjacent_faces, choose_views, face_areas, rate_views
+from threedfs.geometry.faces import face_areas
+from threedfs.texture.choose import ChoiceRule, adjacent_faces, choose_views, rate_views
 from threedfs.texture.vertices import ABSENT, GRAZING, sample_vertices
 from threedfs.types import Mesh
 

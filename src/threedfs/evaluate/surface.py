@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.spatial import cKDTree
 
+from threedfs.geometry.faces import face_vectors
 from threedfs.types import Mesh
 
 
@@ -24,12 +25,6 @@ def sample_surface(mesh: Mesh, count: int, generator: np.random.Generator) -> tu
     root, second = np.sqrt(generator.random((count, 1))), generator.random((count, 1))
     a, b, c = np.moveaxis(corners[face], 1, 0)
     return (1 - root) * a + root * ((1 - second) * b + second * c), face
-
-
-def face_vectors(mesh: Mesh) -> np.ndarray:
-    """Return the outward normal of each face times twice its area, (F, 3)."""
-    a, b, c = np.moveaxis(mesh.vertices[mesh.faces], 1, 0)
-    return np.cross(b - a, c - a)
 
 
 class SurfaceDistance:

@@ -10,7 +10,7 @@ from threedfs.errors import UserError
 from threedfs.io.documents import read_document, write_document
 from threedfs.io.schema import KEYFRAMES
 from threedfs.io.views import decode_view, encode_view
-from threedfs.types import Keyframe
+from threedfs.types import Keyframe, View
 
 
 def write_keyframes(
@@ -49,6 +49,11 @@ def read_keyframes(path: Path) -> dict[str, Keyframe]:
     """Read all keyframes, by name, in the order of the frames."""
     content = read_document(path, KEYFRAMES)
     return {name: _decode(content["keyframes"][name]) for name in content["order"]}
+
+
+def read_views(path: Path) -> dict[str, View]:
+    """Read the views of all keyframes and of their neighbours, by name."""
+    return {view.name: view for entry in read_keyframes(path).values() for view in (entry.view, *entry.neighbours)}
 
 
 def read_keyframe(path: Path, name: str) -> Keyframe:

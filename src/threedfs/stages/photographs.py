@@ -11,7 +11,7 @@ from threedfs.evaluate.photo_error import measure_photo
 from threedfs.evaluate.scores import Metric
 from threedfs.evaluate.surface import SurfaceDistance, sample_surface
 from threedfs.io.crops import read_crops
-from threedfs.io.keyframes import read_keyframes
+from threedfs.io.keyframes import read_views
 from threedfs.io.meshes import read_mesh
 from threedfs.io.metrics import write_metrics
 from threedfs.io.texture import read_texture
@@ -43,9 +43,7 @@ def run(
     """
     painted, record = read_textured_obj(textured / "mesh.obj"), read_texture(textured / "painted.json")
     images = read_crops(crops)
-    views = {
-        view.name: view for entry in read_keyframes(keyframes).values() for view in (entry.view, *entry.neighbours)
-    }
+    views = read_views(keyframes)
     samples = sample_vertices(
         painted.mesh, [views[name] for name in record.painted_from], images.image, images.valid_of
     )

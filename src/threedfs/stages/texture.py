@@ -6,7 +6,7 @@ from pathlib import Path
 
 from threedfs.errors import UserError
 from threedfs.io.crops import read_crops
-from threedfs.io.keyframes import read_keyframes
+from threedfs.io.keyframes import read_views
 from threedfs.io.meshes import read_mesh
 from threedfs.io.texture import TextureRecord, write_texture
 from threedfs.io.textured_meshes import write_textured_glb, write_textured_obj
@@ -49,9 +49,7 @@ def run(
     if simple is None:
         job.progress.note(f"{mesh} is not closed, so its texture has all of its faces")
         simple = full
-    views = {
-        view.name: view for entry in read_keyframes(keyframes).values() for view in (entry.view, *entry.neighbours)
-    }
+    views = read_views(keyframes)
     names = [name for name in images.names if name in views]
     held = hold_out(names, params.held_out_step)
     painters = spread_views([views[name] for name in names if name not in held], params.views)

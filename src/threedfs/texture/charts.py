@@ -9,9 +9,10 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from threedfs.geometry.faces import face_areas, face_vectors
 from threedfs.geometry.plane import axes_on
 from threedfs.geometry.projection import project
-from threedfs.texture.choose import adjacent_faces, face_areas
+from threedfs.texture.choose import adjacent_faces
 from threedfs.types import Mesh, View
 
 _MARGIN = 2
@@ -107,8 +108,7 @@ def _lay_flat(mesh: Mesh, chart: np.ndarray, view: np.ndarray, corners: np.ndarr
     density = (
         np.sqrt(texels / max(areas[view[chart] >= 0].sum(), 1e-300)) if len(painted) else 100 / np.sqrt(areas.sum())
     )
-    a, b, c = (mesh.vertices[mesh.faces[:, corner]] for corner in range(3))
-    across = np.cross(b - a, c - a)
+    across = face_vectors(mesh)
     order = blank[np.argsort(chart[blank], kind="stable")]
     for faces in np.split(order, np.flatnonzero(np.diff(chart[order])) + 1):
         normal = across[faces].sum(axis=0)

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from threedfs.geometry.faces import face_areas
 from threedfs.geometry.projection import project
 from threedfs.segment.alpha_expansion import expand
 from threedfs.segment.energy import LabelGraph, energy
@@ -96,12 +97,6 @@ def adjacent_faces(mesh: Mesh) -> tuple[np.ndarray, np.ndarray]:
     first, second = order[:-1][same], order[1:][same]
     ends = mesh.vertices[edges[first]]
     return np.stack([first // 3, second // 3], axis=1), np.linalg.norm(ends[:, 0] - ends[:, 1], axis=1)
-
-
-def face_areas(mesh: Mesh) -> np.ndarray:
-    """Return the area (F,) of each face."""
-    a, b, c = (mesh.vertices[mesh.faces[:, corner]] for corner in range(3))
-    return np.linalg.norm(np.cross(b - a, c - a), axis=1) / 2
 
 
 def _share(values: np.ndarray) -> np.ndarray:

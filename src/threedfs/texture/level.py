@@ -11,6 +11,7 @@ from scipy.sparse.linalg import splu
 
 from threedfs.geometry.projection import project
 from threedfs.object.silhouettes import draw_silhouette
+from threedfs.texture.pixels import sample_colors
 from threedfs.texture.vertices import Reader, spread_colors
 from threedfs.types import Mesh, View
 
@@ -58,11 +59,9 @@ def _sample(mesh: Mesh, views: Sequence[View], vertex: np.ndarray, rank: np.ndar
     colors = np.empty((len(vertex), 3))
     for each in np.unique(rank):
         own = np.flatnonzero(rank == each)
-        pixels = project(views[each], mesh.vertices[vertex[own]])[0].astype(np.float32)
+        pixels = project(views[each], mesh.vertices[vertex[own]])[0]
         image = _blur_inside(read_image(views[each].name), draw_silhouette(mesh, views[each]))
-        for block in np.array_split(np.arange(len(own)), len(own) // 30_000 + 1):  # cv2.remap takes 32,767 rows
-            places = pixels[block, None]
-            colors[own[block]] = cv2.remap(image, places, None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE)[:, 0]
+        colors[own] = sample_colors(image, pixels)
     return colors
 
 

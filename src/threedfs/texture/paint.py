@@ -7,9 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from threedfs.geometry.faces import face_areas
 from threedfs.texture.bake import bake_texture
 from threedfs.texture.charts import cut_charts
-from threedfs.texture.choose import ChoiceRule, choose_views, face_areas
+from threedfs.texture.choose import ChoiceRule, choose_views
 from threedfs.texture.exposure import apply_gains, expose, find_gains
 from threedfs.texture.level import level_seams
 from threedfs.texture.textured import TexturedMesh

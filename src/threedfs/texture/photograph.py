@@ -4,16 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-import cv2
 import numpy as np
 
 from threedfs.geometry.projection import project
 from threedfs.geometry.raycast import Hits, RayCaster
+from threedfs.texture.pixels import sample_colors
 from threedfs.texture.textured import TexturedMesh
 from threedfs.types import Mesh, View
-
-_BLOCK = 30_000
-"""Points at once: cv2.remap takes images of at most 32,767 rows."""
 
 
 class Photographer:
@@ -58,15 +55,7 @@ def photograph_texture(textured: TexturedMesh) -> Photographer:
     texels = textured.image.astype(np.float32)
 
     def color(hits: Hits) -> np.ndarray:
-        places = (hits.weights[:, :, None] * textured.corners[hits.triangle]).sum(axis=1).astype(np.float32)
-        return np.concatenate(
-            [
-                cv2.remap(
-                    texels, places[at : at + _BLOCK, None], None, cv2.INTER_LINEAR, borderMode=cv2.BORDER_REPLICATE
-                )[:, 0]
-                for at in range(0, max(len(places), 1), _BLOCK)
-            ]
-        )
+        return sample_colors(texels, (hits.weights[:, :, None] * textured.corners[hits.triangle]).sum(axis=1))
 
     return Photographer(textured.mesh, color)
 

@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from scipy.sparse import coo_array
 
+from threedfs.geometry.faces import face_vectors
 from threedfs.geometry.projection import project
 from threedfs.geometry.raycast import RayCaster
 from threedfs.geometry.vectors import dot, normalise
@@ -98,8 +99,7 @@ def confirm_vertices(samples: np.ndarray) -> np.ndarray:
 
 def vertex_normals(mesh: Mesh) -> np.ndarray:
     """Return the outward unit normal (V, 3) at each vertex, the mean of its faces' weighed by their areas."""
-    a, b, c = (mesh.vertices[mesh.faces[:, corner]] for corner in range(3))
-    across = np.cross(b - a, c - a)
+    across = face_vectors(mesh)
     total = np.zeros_like(mesh.vertices)
     for axis in range(3):
         for corner in range(3):
