@@ -1,10 +1,6 @@
 """Contract: the stage surface on a sphere on a table, some of whose depth is wrong and not confirmed."""
 
-import os
-import subprocess
-import sys
 from dataclasses import replace
-from pathlib import Path
 
 import cv2
 import numpy as np
@@ -166,18 +162,8 @@ def test_depth_that_nothing_confirms_carves_no_pit(pitted, table):
     assert closed < 0.1 < 0.2 < believed
 
 
-def test_two_jobs_write_the_same_bytes(pitted):
-    """Exact: each in a process of its own, with one thread for BLAS, as jobs are."""
-    code = "import sys; from pathlib import Path; from test_surface_stage import work; work(Path(sys.argv[1]))"
-    path = os.pathsep.join([str(Path(__file__).parent), *filter(None, sys.path)])
-    single = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS"), "1")
-    written = []
-    for _ in range(2):
-        subprocess.run(
-            [sys.executable, "-c", code, pitted], env={**os.environ, **single, "PYTHONPATH": path}, check=True
-        )
-        written.append([(pitted / name).read_bytes() for name in ("mesh.ply", "silhouettes.zarr.zip")])
-    assert written[0] == written[1]
+def test_the_same_bytes_twice(pitted):
+    assert work(pitted)[1] == work(pitted)[1]
 
 
 @pytest.mark.parametrize(
