@@ -28,6 +28,7 @@ from threedfs.progress import Progress
 from threedfs.segment.appearance import Appearance
 from threedfs.segment.color_model import ColorModel, lab_from_rgb
 from threedfs.stages import surface
+from threedfs.surface import shape
 from threedfs.types import Box, Keyframe, Plane, Support, VoxelGrid
 
 SIDE = 44
@@ -180,6 +181,8 @@ def test_the_same_bytes_twice(pitted):
         {"hull_tolerance": 0.4},
         {"bound_tolerance": 0.0},
         {"gap_tolerance": 0.0},
+        {"free_share": 1.0},
+        {"stiffness": 0.0},
         {"closing": 0.0},
         {"medians": 0},
         {"sure_from": 0.0},
@@ -263,3 +266,19 @@ def test_where_the_second_masks_are_empty_the_first_surface_stays(right, table, 
     first = work(right, frames=0)[1][0]
     monkeypatch.setattr(surface, "mask_frame", lambda view, *_: np.zeros(view.camera.shape, bool))
     assert work(right)[1][0] == first
+
+
+def test_tunnels_up_to_the_width_are_closed(right, monkeypatch):
+    """Exact: a shaft three voxels wide through the fused sphere makes a handle, unless it is closed."""
+    shaped = shape.complete_depth
+
+    def pierce(*arguments):
+        field = shaped(*arguments)
+        middle = field.shape[0] // 2
+        field[middle - 1 : middle + 2, :, field.shape[2] // 2 - 1 : field.shape[2] // 2 + 2] = 1
+        return field
+
+    monkeypatch.setattr(shape, "complete_depth", pierce)
+    given = {"frames": 0, "free_share": 0.0, "closing": 0.0, "stiffness": 0.0}
+    genus = [1 - work(right, tunnel_width=width, **given)[0].euler_number // 2 for width in (0.0, 4.0)]
+    assert genus == [1, 0]

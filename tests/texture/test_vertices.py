@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 import trimesh
 
+from threedfs.geometry.faces import vertex_normals
 from threedfs.geometry.projection import backproject_map
 from threedfs.geometry.raycast import RayCaster
 from threedfs.geometry.rigid import look_at
-from threedfs.texture.vertices import ABSENT, color_vertices, confirm_vertices, sample_vertices, vertex_normals
+from threedfs.texture.vertices import ABSENT, color_vertices, confirm_vertices, sample_vertices
 from threedfs.types import Camera, Mesh, View
 
 CAMERA = Camera(160, 160, 200.0, 200.0, 79.5, 79.5)

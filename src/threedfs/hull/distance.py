@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+import numba
 import numpy as np
-from numba import njit
+from numba import njit, prange
 
 from threedfs.geometry.grid import voxel_places
-from threedfs.segment.lookup import nearest_pixels
+from threedfs.segment.lookup import find_pixel
 from threedfs.segment.outline import depth_inside
 from threedfs.types import View, VoxelGrid
 
@@ -22,6 +23,7 @@ def measure_hull(
     *,
     ramp: float,
     tolerances: Sequence[float],
+    threads: int = 1,
 ) -> list[np.ndarray]:
     """Return the field of the masks' hull, (nx, ny, nz) float32 in [-1, 1], for each share of masks that may be wrong.
 
@@ -39,37 +41,46 @@ def measure_hull(
         Distance at which the field is 1, voxels.
     tolerances : sequence of float
         Shares of the views whose masks show something.
+    threads : int
+        Cores used; the result does not depend on it.
     """
     places = np.flatnonzero(allowed)
     centres = voxel_places(grid, places)
     count = sum(masks[name].any() for name in views)
     ranks = [min(int(share * count), max(count - 1, 0)) for share in tolerances]
-    largest = np.full((max(ranks) + 1, len(places)), -1, np.float32)
+    largest = np.full((len(places), max(ranks) + 1), -1, np.float32)
+    numba.set_num_threads(max(1, min(threads, numba.config.NUMBA_NUM_THREADS)))
     for name, view in views.items():
         if not masks[name].any():
             continue
-        row, column = nearest_pixels(view, centres)
         outside = -depth_inside(masks[name] | ~valid[name])
         # world length of a pixel, per depth, in ramps
         share = 1 / (view.camera.fx * grid.spacing * ramp)
-        _insert(centres, view.cam_from_world[2], row, column, outside, share, largest)
+        _insert(centres, view.px_from_world, view.cam_from_world[2], outside, share, largest)
     fields = []
     for rank in ranks:
         field = np.ones(grid.shape, np.float32)
-        field.reshape(-1)[places] = largest[rank]
+        field.reshape(-1)[places] = largest[:, rank]
         fields.append(field)
     return fields
 
 
-@njit(cache=True)
-def _insert(centres, depth_from_world, row, column, outside, share, largest):
+@njit(cache=True, parallel=True, error_model="numpy")
+def _insert(centres, px_from_world, depth_from_world, outside, share, largest):
     """Put each voxel's distance from one cone, in ramps, in its place among the largest so far, in falling order."""
     d = depth_from_world
-    for n in range(len(row)):
-        if row[n] < 0:
+    last = largest.shape[1] - 1
+    for n in prange(len(centres)):
+        if largest[n, last] >= 1:  # no cone tells more of it
             continue
-        depth = d[0] * centres[n, 0] + d[1] * centres[n, 1] + d[2] * centres[n, 2] + d[3]
-        value = min(max(outside[row[n], column[n]] * depth * share, -1.0), 1.0)
-        for rank in range(len(largest)):
-            if value > largest[rank, n]:
-                value, largest[rank, n] = largest[rank, n], value
+        x, y, z = centres[n, 0], centres[n, 1], centres[n, 2]
+        row, column = find_pixel(x, y, z, px_from_world, outside.shape[0], outside.shape[1])
+        if row < 0:
+            continue
+        depth = d[0] * x + d[1] * y + d[2] * z + d[3]
+        value = min(max(outside[row, column] * depth * share, -1.0), 1.0)
+        if value <= largest[n, last]:
+            continue
+        for rank in range(last + 1):
+            if value > largest[n, rank]:
+                value, largest[n, rank] = largest[n, rank], value

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_array
 
+from threedfs.geometry.faces import join_vertices
 from threedfs.types import Mesh
 
 
@@ -29,11 +29,8 @@ def smooth_mesh(mesh: Mesh, steps: int, contrast: float) -> Mesh:
     ----------
     Zhang, Ben Hamza, Vertex-based anisotropic smoothing of 3D mesh data, 2006.
     """
-    count = len(mesh.vertices)
     edges = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]])
-    both = np.concatenate([edges, edges[:, ::-1]])
-    graph = coo_array((np.ones(len(both)), (both[:, 0], both[:, 1])), shape=(count, count)).tocsr()
-    graph.data[:] = 1
+    graph = join_vertices(mesh)
     degree = np.maximum(np.diff(graph.indptr), 1)[:, None]
     vertices = mesh.vertices.copy()
     for _ in range(steps):

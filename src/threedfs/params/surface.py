@@ -89,11 +89,26 @@ class SurfaceParams(SmoothingSettings):
         minimum=0.0,
         maximum=1.0,
     )
+    free_share: float = parameter(
+        0.15,
+        "share of the keyframes that must look at a place and find it free before it is, on a bare object; none must "
+        "on a sure one",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    stiffness: float = parameter(
+        10.0,
+        "how much the surface resists bending where no trusted depth holds it; 0 for not at all",
+        minimum=0.0,
+    )
     closing: float = parameter(
         1.0,
         "share by which pits and tunnels one or two voxels wide are closed on a bare object; none are on a sure one",
         minimum=0.0,
         maximum=1.0,
+    )
+    tunnel_width: float = parameter(
+        4.0, "width up to which tunnels through the object are closed; 0 for none", unit="voxel", minimum=0.0
     )
     medians: int = parameter(
         3,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +22,6 @@ from threedfs.io.poses import read_poses
 from threedfs.io.segmentation import read_segmentation
 from threedfs.io.volumes import read_support
 from threedfs.job import Job
-from threedfs.locate.height import height_above
 from threedfs.object.silhouettes import draw_silhouette
 from threedfs.params.fuse_object import FuseObjectParams
 from threedfs.params.rules import make_rule
@@ -32,6 +32,7 @@ from threedfs.segment.frame_mask import mask_frame, spread_frames
 from threedfs.segment.gather import pixels_at
 from threedfs.segment.refine import RefineRule
 from threedfs.surface.complete import HullRule
+from threedfs.surface.confirmed import ConfirmedDepth
 from threedfs.surface.shape import ShapeRule, shape_surface
 from threedfs.surface.trust import TrustRule, rate_sureness, trust_depth
 from threedfs.texture.vertices import color_vertices, confirm_vertices, sample_vertices
@@ -85,6 +86,10 @@ def run(
     fused_as = make_params(FuseObjectParams, fusion)
     paths = {path.name.removesuffix(".zarr.zip"): path for path in depth}
     rule, corners, own = make_rule(TrustRule, params), place.box.corners(), {}
+
+    def depth_of(name):
+        return read_depth_map(paths[name]).depth
+
     for name, view in views.items():
         said, matched = trust.read(name), read_depth_map(paths[name]).confidence
         length = read_object_pixels(keyframes, name) or measure_object([view], corners) or 0.0
@@ -104,12 +109,12 @@ def run(
         threads=job.threads,
     )
     for name, view in job.progress.track(views.items(), "keyframe", len(views)):
-        fused.add(view, read_depth_map(paths[name]).depth, own[name])
+        fused.add(view, depth_of(name), own[name])
+    confirmed = ConfirmedDepth(fused, clip, sureness, views, own, depth_of, job.threads)
     shaping = make_rule(ShapeRule, params, complete=make_rule(HullRule, params))
-    height = height_above(place.plane, grid)
-    surface = shape_surface(fused, clip, sureness, height, cut.masks, views, valid, shaping)
+    surface = shape_surface(confirmed, place.plane, cut.masks, views, valid, shaping)
     if surface is not None and params.frames:
-        learnt, tracked = read_appearance(appearance), job.progress.track(frames.items(), "frame", len(frames))
+        learnt = read_appearance(appearance)
         reach = params.outline_ramp * voxel
         cut_as = make_params(SegmentParams, segmentation)
         refine = make_rule(
@@ -120,19 +125,16 @@ def run(
             pair_weight=cut_as.refine_pair_weight,
             contrast=cut_as.refine_contrast,
         )
-        outlines = {
-            name: mask_frame(
-                view,
-                images.image(name),
-                valid[name],
-                draw_silhouette(surface, view),
-                pixels_at(place.box, view, reach),
-                learnt,
-                refine,
-            )
-            for name, view in tracked
-        }
-        surface = shape_surface(fused, clip, sureness, height, outlines, frames, valid, shaping) or surface
+
+        def outline(name):
+            view, silhouette = frames[name], draw_silhouette(surface, frames[name])
+            ramp = pixels_at(place.box, view, reach)
+            return mask_frame(view, images.image(name), valid[name], silhouette, ramp, learnt, refine)
+
+        with ThreadPoolExecutor(job.threads) as pool:
+            found = job.progress.track(pool.map(outline, frames), "frame", len(frames))
+            outlines = dict(zip(frames, found, strict=True))
+        surface = shape_surface(confirmed, place.plane, outlines, frames, valid, shaping) or surface
     if surface is None:
         raise UserError(
             f"{labels}: expected masks that agree on where the object is, found that no place lies inside of enough of "

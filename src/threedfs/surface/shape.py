@@ -8,14 +8,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from threedfs.fusion.softmax import SoftMaximum
 from threedfs.hull.distance import measure_hull
 from threedfs.hull.grid import may_be_hull
+from threedfs.locate.height import height_above
 from threedfs.object.extract import extract_surface
 from threedfs.object.field import mask_field
 from threedfs.object.smooth import smooth_mesh
 from threedfs.surface.complete import HullRule, close_pits, complete_depth
-from threedfs.types import Mesh, View
+from threedfs.surface.confirmed import ConfirmedDepth
+from threedfs.surface.plate import bend_mesh, support_vertices
+from threedfs.surface.sight import fill_unseen
+from threedfs.surface.tunnels import close_tunnels
+from threedfs.types import Mesh, Plane, View
 
 
 @dataclass(frozen=True)
@@ -26,55 +30,57 @@ class ShapeRule:
     hull_tolerance: float
     bound_tolerance: float
     gap_tolerance: float
+    free_share: float
     closing: float
+    tunnel_width: float
     medians: int
     smoothing_steps: int
     smoothing_contrast: float
+    stiffness: float
 
 
 def shape_surface(
-    fused: SoftMaximum,
-    clip_distance: float,
-    sureness: float,
-    height: np.ndarray,
+    depth: ConfirmedDepth,
+    plane: Plane,
     masks: Mapping[str, np.ndarray],
     views: Mapping[str, View],
     valid: Mapping[str, np.ndarray],
     rule: ShapeRule,
 ) -> Mesh | None:
-    """Return the closed surface that agrees with the depth fused so far and with masks; None if nothing is inside.
+    """Return the closed surface that agrees with depth and masks; None if nothing is inside.
 
     Not in the paper.
 
     Parameters
     ----------
-    fused : SoftMaximum
-        Holds the votes of all views' depth; stays as it is.
-    clip_distance : float
-        Of those votes, scene units.
-    sureness : float
-        Of the object's depth, in [0, 1] (`rate_sureness`).
-    height : (nx, ny, nz) float32
-        Above the support plane, scene units.
+    depth : ConfirmedDepth
+        Stays as it is.
+    plane : Plane
+        The support plane.
     masks, views, valid : mapping of str
         (H, W) bool, View, and (H, W) bool: pixels that show the scene.
     rule : ShapeRule
     """
     if not any(masks[name].any() for name in views):
         return None
-    grid = fused.grid
+    grid, sureness = depth.fused.grid, depth.sureness
+    height = height_above(plane, grid)
     hulls = measure_hull(
         masks,
         views,
         valid,
         grid,
         may_be_hull(height, grid),
-        ramp=clip_distance / grid.spacing,
+        ramp=depth.clip_distance / grid.spacing,
         tolerances=(rule.hull_tolerance, rule.bound_tolerance, rule.gap_tolerance),
+        threads=depth.threads,
     )
-    sdf = complete_depth(deepcopy(fused), *hulls, sureness, height > 0, masks, views, rule.complete)
+    sdf = complete_depth(deepcopy(depth.fused), *hulls, sureness, height > 0, masks, views, rule.complete)
     sdf = close_pits(sdf, rule.closing * (1 - sureness))
+    sdf = fill_unseen(sdf, hulls[-1], height > 0, depth, rule.free_share)
     alone = mask_field(sdf, np.ones(grid.shape, bool), height, grid.spacing, rule.medians)
+    alone = close_tunnels(alone, height > 0, rule.tunnel_width)
     if not (alone < 0).any():
         return None
-    return smooth_mesh(extract_surface(alone, grid), rule.smoothing_steps, rule.smoothing_contrast)
+    smooth = smooth_mesh(extract_surface(alone, grid), rule.smoothing_steps, rule.smoothing_contrast)
+    return bend_mesh(smooth, support_vertices(smooth, depth, plane), rule.stiffness)

@@ -5,19 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 import numpy as np
-from scipy.sparse import coo_array
 
-from threedfs.geometry.faces import face_vectors
-from threedfs.geometry.projection import project
-from threedfs.geometry.raycast import RayCaster
-from threedfs.geometry.vectors import dot, normalise
+from threedfs.geometry.faces import join_vertices
+from threedfs.geometry.visible import see_vertices
 from threedfs.types import Mesh, View
 
 SQUARE, GRAZING = 0.3, 0.1
 """Cosines between a vertex's normal and the ray to a camera: from the first, the camera shows the vertex rather than
 the edge there; from the second, it sees it at all."""
-_LIFT = 1e-3
-"""How far a ray starts from its vertex, lengths of the mesh's box: beyond the faces that meet there."""
 _AGREE = 16.0
 """Levels by which a photograph that confirms a vertex may differ from the median of all."""
 ABSENT = 256
@@ -40,19 +35,11 @@ def sample_vertices(
     least_cosine : float
         Between a vertex's normal and the ray to a camera, from which the camera sees it.
     """
-    caster, normals = RayCaster(mesh), vertex_normals(mesh)
-    lifted = mesh.vertices + _LIFT * float(np.ptp(mesh.vertices, axis=0).max()) * normals
     samples = np.full((len(views), len(mesh.vertices), 3), ABSENT, np.uint16)
-    for rank, view in enumerate(views):
-        rays = view.centre - mesh.vertices
-        seen = np.flatnonzero(dot(normals, normalise(rays)) > least_cosine)
-        pixels, depth = project(view, mesh.vertices[seen])
-        image, valid = read_image(view.name), read_valid(view.name)
-        column, row = np.rint(pixels).T
-        shown = (depth > 0) & (row >= 0) & (column >= 0) & (row < valid.shape[0]) & (column < valid.shape[1])
-        seen, row, column = seen[shown], row[shown].astype(np.int64), column[shown].astype(np.int64)
-        clear = valid[row, column] & ~caster.is_blocked(lifted[seen], rays[seen])
-        samples[rank, seen[clear]] = image[row[clear], column[clear]]
+    for rank, seen in enumerate(see_vertices(mesh, views, least_cosine)):
+        image, valid = read_image(seen.view.name), read_valid(seen.view.name)
+        clear = valid[seen.row, seen.column]
+        samples[rank, seen.vertices[clear]] = image[seen.row[clear], seen.column[clear]]
     return samples
 
 
@@ -97,22 +84,10 @@ def confirm_vertices(samples: np.ndarray) -> np.ndarray:
     return (agree / np.maximum(count, 1)).astype(np.float32)
 
 
-def vertex_normals(mesh: Mesh) -> np.ndarray:
-    """Return the outward unit normal (V, 3) at each vertex, the mean of its faces' weighed by their areas."""
-    across = face_vectors(mesh)
-    total = np.zeros_like(mesh.vertices)
-    for axis in range(3):
-        for corner in range(3):
-            total[:, axis] += np.bincount(mesh.faces[:, corner], across[:, axis], len(total))
-    return normalise(total)
-
-
 def spread_colors(mesh: Mesh, colors: np.ndarray, known: np.ndarray) -> np.ndarray:
     """Return colours (V, 3) float64, handed on from known vertices to their neighbours, ring by ring; else grey."""
     colors = np.where(known[:, None], colors, 0.0)
-    pairs = np.concatenate([mesh.faces[:, [0, 1]], mesh.faces[:, [1, 2]], mesh.faces[:, [2, 0]]])
-    pairs = np.concatenate([pairs, pairs[:, ::-1]])
-    beside = coo_array((np.ones(len(pairs)), pairs.T), shape=(len(colors),) * 2).tocsr()
+    beside = join_vertices(mesh)
     while True:
         weight = beside @ known.astype(np.float64)
         reached = ~known & (weight > 0)
