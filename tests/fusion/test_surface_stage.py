@@ -232,6 +232,18 @@ def test_what_masks_show_and_no_depth_has_is_filled(table, tmp_path):
     assert volumes[0] < 0.7 * volumes[1]
 
 
+def test_what_a_mask_shows_outside_is_filled_only_against_the_odds(table, tmp_path):
+    """Property: a lost side that eleven masks show and one does not is filled, unless fifty must outnumber it."""
+    write_scene(tmp_path, table, lost=True)
+    cut = read_segmentation(tmp_path / "labels.zarr.zip")
+    name = next(iter(cut.masks))
+    half = cut.masks[name] & (np.cumsum(cut.masks[name], axis=1) * 2 < cut.masks[name].sum(axis=1, keepdims=True))
+    write_segmentation(tmp_path / "labels.zarr.zip", replace(cut, masks={**cut.masks, name: half}), {})
+    given = {"frames": 0, "hull_trust": 0.0, "sure_hull_trust": 0.0}
+    volumes = [work(tmp_path, gap_odds=odds, **given)[0].volume for odds in (2.0, 50.0)]
+    assert volumes[1] < 0.9 * volumes[0]
+
+
 def test_masks_that_contradict_each_other_are_refused(table, tmp_path):
     """Each view shows the object at another side of the sphere, so that no place is inside of all masks."""
     write_scene(tmp_path, table)

@@ -13,13 +13,15 @@ from scipy import ndimage
 from threedfs.geometry.grid import voxel_places
 from threedfs.hull.distance import measure_hull
 from threedfs.segment.lookup import nearest_pixels
-from threedfs.segment.outline import draw_voxels
+from threedfs.segment.outline import depth_inside, draw_voxels
 from threedfs.types import View, VoxelGrid
 
 _RIM = 2
 """Half width of a gap up to which it is a rim, voxels."""
 _REACH = 3
 """Farthest from the solid that a rim is filled, voxels."""
+_WELL = 1.5
+"""Distance from a mask, voxels, beyond which it is no matter of its outline that a voxel is outside."""
 
 
 def fit_masks(
@@ -76,6 +78,7 @@ def find_gaps(
     views: Mapping[str, View],
     grid: VoxelGrid,
     least_views: int,
+    odds: float = 0.0,
 ) -> np.ndarray:
     """Return the voxels (nx, ny, nz) bool of the hull that views show on gaps; as `fit_masks`.
 
@@ -83,6 +86,8 @@ def find_gaps(
     ----------
     hull : (nx, ny, nz) float32
         The masks' hull, negative inside.
+    odds : float
+        How many views must show a voxel on a gap for each that shows it well outside of its mask.
     """
     places = np.flatnonzero(allowed & (hull < 0))
     centres = voxel_places(grid, places)
@@ -92,19 +97,21 @@ def find_gaps(
     own = np.flatnonzero(allowed & solid)
     middle = np.append((voxel_places(grid, own) if len(own) else centres).mean(axis=0), 1)
     covered = draw_voxels(solid, grid, views)
-    gaps = []
+    gaps, outside = [], np.zeros(len(places), np.int32)
     for name, view in views.items():
         gap = masks[name] & ~covered[name]
-        if not gap.any():
+        if not gap.any() and (odds <= 0 or not masks[name].any()):
             continue
         row, column = nearest_pixels(view, centres)
         footprint = max(1, int(np.ceil(view.camera.fx * grid.spacing / (view.cam_from_world[2] @ middle))))
+        if odds > 0:
+            outside[_on(depth_inside(masks[name]) < -_WELL * footprint, row, column)] += 1
         wide = cv2.morphologyEx(gap.astype(np.uint8), cv2.MORPH_OPEN, _disc(_RIM * footprint)) > 0
         voxels = _on(gap, row, column)
         gaps.append(_Gap(voxels, wide[row[voxels], column[voxels]]))
     apart = ndimage.distance_transform_edt(~solid) if solid.any() else np.full(grid.shape, np.inf)
     near = apart.reshape(-1)[places] <= _REACH
-    filled.reshape(-1)[places] = _fill_gaps(gaps, near, least_views)
+    filled.reshape(-1)[places] = _fill_gaps(gaps, near, np.maximum(least_views, odds * outside))
     return filled
 
 
@@ -116,8 +123,8 @@ class _Gap:
     wide: np.ndarray
 
 
-def _fill_gaps(gaps: list[_Gap], near: np.ndarray, least_views: int) -> np.ndarray:
-    """Say which voxels (N,) fill gaps that `least_views` views show them on: any gap if they are near, or wide ones."""
+def _fill_gaps(gaps: list[_Gap], near: np.ndarray, least_views: np.ndarray) -> np.ndarray:
+    """Say which voxels (N,) fill gaps that `least_views` (N,) show them on: any gap if they are near, or wide ones."""
     any_gap, wide = np.zeros(len(near), np.int16), np.zeros(len(near), np.int16)
     for gap in gaps:
         any_gap[gap.voxels] += 1

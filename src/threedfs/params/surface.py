@@ -89,6 +89,11 @@ class SurfaceParams(SmoothingSettings):
         minimum=0.0,
         maximum=1.0,
     )
+    gap_odds: float = parameter(
+        2.0,
+        "views that must show such a voxel for each that shows it well outside of its mask",
+        minimum=0.0,
+    )
     free_share: float = parameter(
         0.15,
         "share of the keyframes that must look at a place and find it free before it is, on a bare object; none must "
@@ -97,7 +102,7 @@ class SurfaceParams(SmoothingSettings):
         maximum=1.0,
     )
     stiffness: float = parameter(
-        10.0,
+        20.0,
         "how much the surface resists bending where no trusted depth holds it; 0 for not at all",
         minimum=0.0,
     )

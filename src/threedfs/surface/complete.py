@@ -26,6 +26,7 @@ class HullRule:
     sure_hull_trust: float
     gap_views: int
     gap_share: float
+    gap_odds: float
 
 
 def complete_depth(
@@ -65,7 +66,7 @@ def complete_depth(
     least_views = max(rule.gap_views, round(rule.gap_share * shown))
 
     def gaps_of(field):
-        return find_gaps((field < 0) & above, filler, above, masks, views, fused.grid, least_views)
+        return find_gaps((field < 0) & above, filler, above, masks, views, fused.grid, least_views, rule.gap_odds)
 
     fused.add_field(hull, (1 - sureness) * rule.hull_trust + sureness * rule.sure_hull_trust)
     gaps = gaps_of(np.maximum(fused.result()[0], bound))
