@@ -77,7 +77,7 @@ def shape_surface(
     )
     sdf = complete_depth(deepcopy(depth.fused), *hulls, sureness, height > 0, masks, views, rule.complete)
     sdf = close_pits(sdf, rule.closing * (1 - sureness))
-    sdf = fill_unseen(sdf, hulls[-1], height > 0, depth, rule.free_share)
+    sdf = fill_unseen(sdf, hulls[-1], height > 0, plane.normal, depth, rule.free_share)
     alone = mask_field(sdf, np.ones(grid.shape, bool), height, grid.spacing, rule.medians)
     alone = close_tunnels(alone, height > 0, rule.tunnel_width)
     if not (alone < 0).any():
