@@ -18,7 +18,7 @@ _BYTES_PER_VOXEL = {
     "segment": 140,
     "volumetric_cut": 120,
 }
-"""At most, over a cube: the highest peaks of the benchmark's jobs are 0.37 to 0.72 of what these give."""
+"""At most, over a cube: the highest peaks of the benchmark's jobs are 0.37 to 0.78 of what these give."""
 
 _BYTES_PER_PIXEL = {"segment": 80, "surface": 12, "volumetric_cut": 20}
 """Of every keyframe, which these stages hold all at once; surface holds masks of three times as many frames."""
