@@ -54,15 +54,11 @@ def bend_mesh(mesh: Mesh, support: np.ndarray, stiffness: float) -> Mesh:
     support : (V,) float64
         As `support_vertices` returns it.
     stiffness : float
-        0 leaves the mesh as it is.
     """
-    if stiffness <= 0:
-        return mesh
-    joined = join_vertices(mesh)
-    normals = vertex_normals(mesh)
+    beside, normals = _mean_beside(mesh), vertex_normals(mesh)
     for _ in range(_NORMAL_ROUNDS):
-        normals = normalise(normals + _mean_beside(joined) @ normals)
-    umbrella = _mean_beside(joined) - eye_array(len(normals))
+        normals = normalise(normals + beside @ normals)
+    umbrella = beside - eye_array(len(normals))
     parts = coo_array(umbrella)
     along = dot(normals[parts.row], normals[parts.col])
     bend = coo_array((parts.data * along, (parts.row, parts.col)), shape=parts.shape).tocsr()
@@ -72,6 +68,7 @@ def bend_mesh(mesh: Mesh, support: np.ndarray, stiffness: float) -> Mesh:
     return Mesh(mesh.vertices + moves[:, None] * normals, mesh.faces)
 
 
-def _mean_beside(joined: csr_array) -> csr_array:
-    """Return what gives each vertex the mean of its neighbours' values."""
+def _mean_beside(mesh: Mesh) -> csr_array:
+    """Return what gives each vertex the mean of its neighbours' values, (V, V)."""
+    joined = join_vertices(mesh)
     return (diags_array(1 / np.maximum(np.diff(joined.indptr), 1)) @ joined).tocsr()

@@ -83,4 +83,6 @@ def shape_surface(
     if not (alone < 0).any():
         return None
     smooth = smooth_mesh(extract_surface(alone, grid), rule.smoothing_steps, rule.smoothing_contrast)
+    if not rule.stiffness:
+        return smooth
     return bend_mesh(smooth, support_vertices(smooth, depth, plane), rule.stiffness)

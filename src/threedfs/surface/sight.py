@@ -55,6 +55,7 @@ def fill_unseen(
     places = np.flatnonzero(above & (hull < 0) & (field >= 0))
     if not least or not len(places):
         return field
+    numba.set_num_threads(max(1, min(depth.threads, numba.config.NUMBA_NUM_THREADS)))
     solid = (field < 0) | ~above
     count = _count_sights(solid, places, depth)
     places, count = places[count < least], count[count < least]
@@ -69,7 +70,6 @@ def _count_sights(solid: np.ndarray, places: np.ndarray, depth: ConfirmedDepth) 
     grid = depth.fused.grid
     index = np.stack(np.unravel_index(places, grid.shape), axis=-1)
     count = np.zeros(len(places), np.int32)
-    numba.set_num_threads(max(1, min(depth.threads, numba.config.NUMBA_NUM_THREADS)))
     for name, view in depth.views.items():
         centre = voxel_from_world(grid, view.centre)
         _count(solid, index, relate(grid, view), invert_depth(depth.read(name)), grid.spacing, centre, _CLEAR, count)
@@ -81,7 +81,6 @@ def _rate_openness(solid: np.ndarray, places: np.ndarray, depth: ConfirmedDepth,
     grid = depth.fused.grid
     index = np.stack(np.unravel_index(places, grid.shape), axis=-1)
     sky = spread_directions(_DIRECTIONS) @ axes_on(up) @ grid.axes.T
-    numba.set_num_threads(max(1, min(depth.threads, numba.config.NUMBA_NUM_THREADS)))
     return _look_up(solid, index, float(sum(grid.shape)) * sky) / len(sky)
 
 
