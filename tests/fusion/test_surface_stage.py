@@ -27,6 +27,7 @@ from threedfs.params.surface import SurfaceParams
 from threedfs.progress import Progress
 from threedfs.segment.appearance import Appearance
 from threedfs.segment.color_model import ColorModel, lab_from_rgb
+from threedfs.segment.mixture import Mixture
 from threedfs.stages import surface
 from threedfs.surface import shape
 from threedfs.types import Box, Keyframe, Plane, Support, VoxelGrid
@@ -53,7 +54,8 @@ def learn_colors():
 
     def fit(color):
         rgb = np.clip(rng.normal(color, 6, (500, 3)), 0, 255).astype(np.uint8)
-        return GaussianMixture(2, reg_covar=1.0, random_state=0).fit(lab_from_rgb(rgb).astype(np.float64))
+        found = GaussianMixture(2, reg_covar=1.0, random_state=0).fit(lab_from_rgb(rgb).astype(np.float64))
+        return Mixture(found.weights_, found.means_, found.precisions_cholesky_)
 
     return Appearance(ColorModel(fit(RED), fit(GREY)), None)
 

@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from sklearn.mixture import GaussianMixture
 
 from threedfs.geometry.rigid import look_at
 from threedfs.geometry.similarity import Similarity
@@ -33,6 +32,7 @@ from threedfs.io import (
 from threedfs.locate.find import Located
 from threedfs.segment.appearance import Appearance
 from threedfs.segment.color_model import ColorModel
+from threedfs.segment.mixture import Mixture
 from threedfs.segment.superpixels import Superpixels
 from threedfs.segment.table import TablePicture
 from threedfs.types import Box, Camera, Features, Keyframe, Plane, SparsePoints, Support, View, VoxelGrid
@@ -55,9 +55,9 @@ def view(name: str, x: float) -> View:
     return View(name, CAMERA, look_at(np.array([x, 0.3, -2.0]), np.zeros(3), np.array([0.0, -1, 0])))
 
 
-def make_mixture() -> GaussianMixture:
+def make_mixture() -> Mixture:
     """A mixture of two colours."""
-    return GaussianMixture(2, random_state=0).fit(RANDOM.normal(50, 10, (40, 3)))
+    return Mixture(np.array([0.25, 0.75]), RANDOM.normal(50, 10, (2, 3)), np.stack([np.eye(3), 2 * np.eye(3)]))
 
 
 @dataclass(frozen=True)

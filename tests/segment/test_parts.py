@@ -10,8 +10,9 @@ from scipy.ndimage import distance_transform_edt
 from threedfs.errors import UserError
 from threedfs.geometry.grid import cover_box, voxel_centres
 from threedfs.object.silhouettes import draw_silhouette
-from threedfs.segment.color_model import TableMatch, fit_color_model, lab_from_rgb, truncate
+from threedfs.segment.color_model import TableMatch, lab_from_rgb, truncate
 from threedfs.segment.energy import BACKGROUND, EMPTY, OBJECT
+from threedfs.segment.fit_colors import fit_color_model
 from threedfs.segment.initialise import UNDECIDED, bound_object, decide_superpixels, fix_voxels, normalised_height
 from threedfs.segment.outline import depth_inside, draw_voxels, grow_voxels, largest_piece, surround_voxels
 from threedfs.segment.pairwise import link_voxels, superpixel_weights, voxel_pairs

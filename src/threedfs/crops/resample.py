@@ -42,17 +42,16 @@ def resample(image: np.ndarray, lens: Lens, camera: Camera) -> tuple[np.ndarray,
         As `find_valid` returns it.
     """
     finer = _refinement(lens, camera)
-    places = _filmed_places(lens, camera, finer)
+    places, valid = _filmed_places(lens, camera, finer)
     # what is averaged afterwards needs no more than linear interpolation
     way = cv2.INTER_CUBIC if finer == 1 else cv2.INTER_LINEAR
     sampled = cv2.remap(image, places, None, way, borderMode=cv2.BORDER_REPLICATE)
-    return shrink(sampled, camera.shape), _are_inside(places, lens, finer)
+    return shrink(sampled, camera.shape), valid
 
 
 def find_valid(lens: Lens, camera: Camera) -> np.ndarray:
     """Say which pixels (H, W) bool of a crop are made from pixels of the image alone."""
-    finer = _refinement(lens, camera)
-    return _are_inside(_filmed_places(lens, camera, finer), lens, finer)
+    return _filmed_places(lens, camera, _refinement(lens, camera))[1]
 
 
 def _refinement(lens: Lens, camera: Camera) -> int:
@@ -60,19 +59,31 @@ def _refinement(lens: Lens, camera: Camera) -> int:
     return max(1, ceil(lens.camera.fx / camera.fx - 1e-3))
 
 
-def _filmed_places(lens: Lens, camera: Camera, finer: int) -> np.ndarray:
-    """Return where each sample of an ideal camera lies in the image as filmed: (H, W, 2) float32, (u, v)."""
+def _filmed_places(lens: Lens, camera: Camera, finer: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return where each sample of an ideal camera lies in the image as filmed, and which pixels lie on it wholly.
+
+    Returns
+    -------
+    places : (finer H, finer W, 2) float32
+        (u, v).
+    inside : (H, W) bool
+        Pixels all of whose samples are on the image; its outermost pixels count if no lens bends it.
+    """
     fine = Lens(camera).resize(camera.width * finer, camera.height * finer).camera
-    places = np.empty((*fine.shape, 2), np.float32)
+    places, inside = np.empty((*fine.shape, 2), np.float32), np.ones(camera.shape, bool)
     filmed = (lens.camera.fx, lens.camera.fy, lens.camera.cx, lens.camera.cy)
     turning = min(turning_radius((lens.k1, lens.k2)) ** 2, np.finfo(np.float64).max)
-    _distort(fine.fx, fine.fy, fine.cx, fine.cy, filmed, (lens.k1, lens.k2), turning, places)
-    return places
+    reach = _FOOTPRINT if lens.k1 or lens.k2 else -0.5
+    last = (lens.camera.width - 1 - reach, lens.camera.height - 1 - reach)
+    _distort(
+        fine.fx, fine.fy, fine.cx, fine.cy, filmed, (lens.k1, lens.k2), turning, reach, last, finer, places, inside
+    )
+    return places, inside
 
 
 @njit(cache=True)
-def _distort(fx, fy, cx, cy, filmed, distortion, turning, places):
-    """Write where each pixel of an ideal camera lies in the image of a lens; as `geometry.distortion.distort`."""
+def _distort(fx, fy, cx, cy, filmed, distortion, turning, first, last, finer, places, inside):
+    """Write where each sample lies in the image of a lens, as `geometry.distortion.distort`, and pixels without it."""
     for row in range(places.shape[0]):
         y = (row - cy) / fy
         for column in range(places.shape[1]):
@@ -84,12 +95,6 @@ def _distort(fx, fy, cx, cy, filmed, distortion, turning, places):
                 places[row, column, 1] = y * factor * filmed[1] + filmed[3]
             else:
                 places[row, column] = _NOWHERE
-
-
-def _are_inside(places: np.ndarray, lens: Lens, finer: int) -> np.ndarray:
-    """Say which crop pixels have all their samples on the image; its outermost pixels count if no lens bends it."""
-    reach = _FOOTPRINT if lens.k1 or lens.k2 else -0.5
-    last = np.array([lens.camera.width, lens.camera.height]) - 1 - reach
-    shown = ((places >= reach) & (places <= last)).all(axis=-1)
-    rows, columns = shown.shape[0] // finer, shown.shape[1] // finer
-    return shown.reshape(rows, finer, columns, finer).all(axis=(1, 3))
+            u, v = places[row, column, 0], places[row, column, 1]
+            if u < first or v < first or u > last[0] or v > last[1]:
+                inside[row // finer, column // finer] = False

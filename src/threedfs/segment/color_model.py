@@ -2,26 +2,18 @@
 
 from __future__ import annotations
 
-import warnings
 from dataclasses import dataclass
 
 import cv2
 import numpy as np
-from sklearn.exceptions import ConvergenceWarning
-from sklearn.mixture import GaussianMixture
 
-from threedfs.errors import UserError
-from threedfs.segment.mixture import log_density
+from threedfs.segment.mixture import Mixture, log_density
 
-_LEAST_VARIANCE = 1.0
-"""Of a component along any direction, Lab units squared: noise of a camera, so that a flat colour is no spike."""
 _UNEXPECTED = 0.05
 """Share of the pixels on the support surface that do not look like it: highlights, things that stand on it."""
 _LIKENESS = 3.0
 """Log ratio of the object's to the background's density from which a spot of the support surface looks like the object
 rather than like a shadow."""
-_FIRST_STEPS, _NEXT_STEPS = 30, 8
-"""Steps of expectation-maximisation from scratch, and from the mixture of the iteration before."""
 
 
 @dataclass(frozen=True)
@@ -54,8 +46,8 @@ class TableMatch:
 class ColorModel:
     """Mixtures of the object's and of the background's colours in Lab."""
 
-    of_object: GaussianMixture
-    of_background: GaussianMixture
+    of_object: Mixture
+    of_background: Mixture
 
     def posterior(self, lab: np.ndarray, table: TableMatch | None = None) -> np.ndarray:
         """Return the probability (N,) float64 that pixels of colours (N, 3) show the object, at even odds before.
@@ -94,50 +86,3 @@ def lab_image(image: np.ndarray) -> np.ndarray:
 def truncate(probability: np.ndarray, cap: float) -> np.ndarray:
     """Return the cost of a probability, -log, at most `cap` (Eq. 20)."""
     return np.minimum(cap, -np.log(np.maximum(probability, 1e-300)))
-
-
-def fit_color_model(
-    object_lab: np.ndarray, background_lab: np.ndarray, components: int, before: ColorModel | None, seed: int
-) -> ColorModel:
-    """Fit a mixture to the colours (N, 3) of each region, going on from the model before, if there is one.
-
-    Raises
-    ------
-    UserError
-        If a region has fewer pixels than the mixture has components.
-    """
-    for name, lab in (("object", object_lab), ("background", background_lab)):
-        if len(lab) < components:
-            raise UserError(
-                f"Expected at least {components} pixels of the {name} to learn its colours from, got {len(lab)}; the "
-                "fused object is hardly in any keyframe, or fills all of them: check its mesh (method fused_sdf)."
-            )
-    return ColorModel(
-        _fit(object_lab, components, before and before.of_object, seed),
-        _fit(background_lab, components, before and before.of_background, seed + 1),
-    )
-
-
-def _fit(lab, components, before, seed):
-    start = (
-        {}
-        if before is None
-        else {
-            "weights_init": before.weights_ / before.weights_.sum(),
-            "means_init": before.means_,
-            "precisions_init": before.precisions_,
-        }
-    )
-    mixture = GaussianMixture(
-        components,
-        covariance_type="full",
-        reg_covar=_LEAST_VARIANCE,
-        max_iter=_FIRST_STEPS if before is None else _NEXT_STEPS,
-        tol=0,
-        random_state=seed,
-        init_params="k-means++",
-        **start,
-    )
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ConvergenceWarning)  # the steps are few on purpose: each round goes on
-        return mixture.fit(lab.astype(np.float64))

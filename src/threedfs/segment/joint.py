@@ -10,9 +10,10 @@ import numpy as np
 from threedfs.errors import UserError
 from threedfs.geometry.grid import voxel_places
 from threedfs.segment.alpha_expansion import expand
-from threedfs.segment.color_model import ColorModel, fit_color_model, lab_from_rgb, truncate
+from threedfs.segment.color_model import ColorModel, lab_from_rgb, truncate
 from threedfs.segment.energy import BACKGROUND, EMPTY, OBJECT, LabelGraph, energy, fold_given
 from threedfs.segment.evidence import ImageEvidence, VoxelEvidence
+from threedfs.segment.fit_colors import fit_color_model
 from threedfs.segment.outline import draw_voxels
 from threedfs.segment.pairwise import voxel_pairs
 from threedfs.segment.unaries import carve_unary, mean_by, scene_unary, sdf_unary, silhouette_unary, soften_silhouette

@@ -2,28 +2,46 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 from numba import njit
-from sklearn.mixture import GaussianMixture
 
 
-def log_density(mixture: GaussianMixture, lab: np.ndarray) -> np.ndarray:
-    """Return the logarithm of a mixture's density at colours, as its `score_samples`, several times as fast.
+@dataclass(frozen=True)
+class Mixture:
+    """A Gaussian mixture of colours, of full covariances.
+
+    Attributes
+    ----------
+    weights : (K,) float64
+    means : (K, 3) float64
+        Lab.
+    precisions_cholesky : (K, 3, 3) float64
+        Upper triangular factors of the inverse covariances: each is a factor times its transpose.
+    """
+
+    weights: np.ndarray
+    means: np.ndarray
+    precisions_cholesky: np.ndarray
+
+
+def log_density(mixture: Mixture, lab: np.ndarray) -> np.ndarray:
+    """Return the logarithm of a mixture's density at colours.
 
     Parameters
     ----------
-    mixture : GaussianMixture
-        Of full covariances, fitted to colours.
+    mixture : Mixture
     lab : (N, 3) float32 or float64
 
     Returns
     -------
     (N,) float64
     """
-    factors = mixture.precisions_cholesky_
+    factors = mixture.precisions_cholesky
     scale = np.log(np.diagonal(factors, axis1=1, axis2=2)).sum(axis=1) - 1.5 * np.log(2 * np.pi)
-    offsets = np.log(np.maximum(mixture.weights_, 1e-300)) + scale
-    return _sum_components(np.ascontiguousarray(lab), mixture.means_, np.ascontiguousarray(factors), offsets)
+    offsets = np.log(np.maximum(mixture.weights, 1e-300)) + scale
+    return _sum_components(np.ascontiguousarray(lab), mixture.means, np.ascontiguousarray(factors), offsets)
 
 
 @njit(cache=True)

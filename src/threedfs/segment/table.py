@@ -74,14 +74,30 @@ def match_table(
         As `TablePicture.predict` gives them.
     """
     deviation = np.sqrt(_NOISE**2 + (_SPREAD * spread) ** 2)
-    best = np.full(known.shape, np.inf, np.float32)
-    for down in (-1, 0, 1):
-        for across in (-1, 0, 1):
-            moved = np.roll(color, (down, across), axis=(0, 1))
-            apart = np.where(np.roll(known, (down, across), axis=(0, 1)), ((lab - moved) ** 2).sum(-1), np.inf)
-            best = np.minimum(best, apart)
+    best = _match_around(lab, color, known)
     density = -0.5 * best / deviation**2 - 3 * np.log(deviation) - 1.5 * np.log(2 * np.pi)
     return TableMatch(known, color, density.astype(np.float32), beneath)
+
+
+@njit(cache=True)
+def _match_around(lab, color, known):
+    """Return the least squared distance (H, W) of each pixel's colour from those known within a pixel around it.
+
+    Rows and columns go on from the other end, where nothing is known next to the border.
+    """
+    rows, columns = known.shape
+    best = np.full((rows, columns), np.inf, np.float32)
+    for row in range(rows):
+        for column in range(columns):
+            for down in (-1, 0, 1):
+                for across in (-1, 0, 1):
+                    y, x = (row - down) % rows, (column - across) % columns
+                    if known[y, x]:
+                        apart = np.float32(0)
+                        for channel in range(3):
+                            apart += (lab[row, column, channel] - color[y, x, channel]) ** 2
+                        best[row, column] = min(best[row, column], apart)
+    return best
 
 
 def picture_table(

@@ -11,8 +11,9 @@ from threedfs.errors import UserError
 from threedfs.geometry.grid import voxel_centres
 from threedfs.geometry.projection import project
 from threedfs.segment.alpha_expansion import expand
-from threedfs.segment.color_model import fit_color_model, lab_image
+from threedfs.segment.color_model import lab_image
 from threedfs.segment.energy import BACKGROUND, EMPTY, OBJECT, fold_given
+from threedfs.segment.fit_colors import fit_color_model
 from threedfs.segment.lookup import find_pixels
 from threedfs.segment.outline import draw_voxels
 from threedfs.segment.pairwise import voxel_pairs
