@@ -25,6 +25,7 @@ from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
 from threedfs.io.textured_meshes import read_textured_obj
 from threedfs.io.volumes import read_silhouettes
+from threedfs.report.pictures import color_depth, color_normals, outline_mask
 from threedfs.texture.photograph import Photographer, photograph_texture, photograph_vertices
 from threedfs.types import Keyframe, Mesh
 
@@ -36,24 +37,6 @@ def write_title(image: np.ndarray, title: str) -> None:
     (width, height), _ = cv2.getTextSize(title, cv2.FONT_HERSHEY_SIMPLEX, 0.5, 1)
     cv2.rectangle(image, (0, 0), (width + 12, height + 12), (30, 30, 30), -1)
     cv2.putText(image, title, (6, height + 5), cv2.FONT_HERSHEY_SIMPLEX, 0.5, (255, 255, 255), 1, cv2.LINE_AA)
-
-
-def outline(image: np.ndarray, mask: np.ndarray) -> np.ndarray:
-    """Draw the mask's outline in green."""
-    contours, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)
-    return cv2.drawContours(image.copy(), contours, -1, (0, 255, 0), 2)
-
-
-def colour_depth(depth: np.ndarray, keyframe: Keyframe) -> np.ndarray:
-    """Colour inverse depth over the keyframe's expected range."""
-    near, far = 1 / keyframe.near, 1 / keyframe.far
-    level = np.clip((1 / depth - far) / (near - far), 0, 1)
-    return cv2.applyColorMap((np.nan_to_num(level) * 255).astype(np.uint8), cv2.COLORMAP_TURBO)[..., ::-1]
-
-
-def colour_normals(normals: np.ndarray) -> np.ndarray:
-    """Show normals that face the camera as colours: x red, y green, towards the camera blue."""
-    return (np.nan_to_num(normals * [0.5, 0.5, -0.5] + 0.5) * 255).clip(0, 255).astype(np.uint8)
 
 
 def find_photographer(folder: Path) -> Photographer | None:
@@ -111,9 +94,9 @@ def main(results: Path, picture: Path, masks: str = "gc_2d3d_pixel", surface: st
         keyframe = keyframes[name]
         depth = read_depth_map(results / f"06_depth/{name}.zarr.zip").depth
         rows = [
-            outline(crops.image(name), silhouettes[name]),
-            colour_depth(depth, keyframe),
-            colour_normals(normals_from_depth(keyframe.view.camera, depth)),
+            outline_mask(crops.image(name), silhouettes[name]),
+            color_depth(depth, keyframe),
+            color_normals(normals_from_depth(keyframe.view.camera, depth)),
             render(mesh, keyframe),
             *([photograph(photographer, keyframe)] if photographer else []),
         ]

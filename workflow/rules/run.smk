@@ -5,6 +5,7 @@ from threedfs.store.run_lock import take_over
 
 RUN_LOCK = take_over(Path(".snakemake")) if workflow.is_main_process else None
 STARTED = time.time()
+REPORTED = ("cv2", "numba", "numpy", "pycolmap", "scipy", "skimage", "trimesh", "zarr")
 
 
 def refuse_missing():
@@ -25,7 +26,8 @@ def look_on_demand():
 
 def finish(unfinished=()):
     """Write tables and plots and say how the run went; `unfinished` are outputs that it should have made."""
-    from threedfs.run_end.finish import Run, finish_run
+    from threedfs.params.changes import list_changes
+    from threedfs.run_end.finish import Run, finish_run, report_run
 
     run = Run(
         Path("results"),
@@ -35,5 +37,11 @@ def finish(unfinished=()):
         tuple(config["methods"]),
         tuple(Path(table) for table in rules.collect.input),
         config["seed"],
+        {
+            name: list_changes(config, entry["settings"])
+            for name, entry in SEQUENCES.items()
+        },
+        library_versions(REPORTED),
     )
+    report_run(run, lambda sentence: sys.stderr.write(f"threedfs: {sentence}\n"))
     sys.stderr.write(finish_run(run, [str(path) for path in unfinished]))

@@ -42,3 +42,10 @@ def read_colored_mesh(path: Path) -> tuple[Mesh, np.ndarray | None]:
     mesh = read_mesh(path)
     visual = trimesh.load(path, force="mesh", process=False).visual
     return mesh, np.asarray(visual.vertex_colors)[:, :3] if visual.kind == "vertex" else None
+
+
+def read_vertex_property(path: Path, name: str) -> np.ndarray | None:
+    """Read a property (V,) of the vertices of a PLY that `write_colored_mesh` wrote; None where it has none."""
+    raw = trimesh.load(path, force="mesh", process=False).metadata.get("_ply_raw", {})
+    found = raw.get("vertex", {}).get("data")
+    return np.asarray(found[name]).ravel() if found is not None and name in (found.dtype.names or ()) else None

@@ -12,7 +12,7 @@ from trimesh.visual.material import PBRMaterial
 from threedfs.errors import UserError
 from threedfs.io.atomic import atomic
 from threedfs.io.meshes import read_mesh
-from threedfs.texture.textured import TexturedMesh
+from threedfs.texture.textured import TexturedMesh, cut_charts, scale_places
 from threedfs.types import Mesh
 
 
@@ -25,7 +25,7 @@ def write_textured_obj(path: Path, textured: TexturedMesh) -> None:
     pairs = np.stack([textured.mesh.faces.ravel(), corner.ravel()], axis=1).reshape(-1, 6) + 1
     lines = [f"# made by threedfs\nmtllib {path.stem}.mtl\nusemtl {path.stem}"]
     lines += [f"v {x:.9g} {y:.9g} {z:.9g}" for x, y, z in textured.mesh.vertices]
-    lines += [f"vt {u:.9g} {v:.9g}" for u, v in _scale_places(places, textured.image)]
+    lines += [f"vt {u:.9g} {v:.9g}" for u, v in scale_places(places, textured.image)]
     lines += [f"f {a}/{at} {b}/{bt} {c}/{ct}" for a, at, b, bt, c, ct in pairs]
     material = f"newmtl {path.stem}\nKa 1 1 1\nKd 1 1 1\nKs 0 0 0\nillum 1\nmap_Kd {path.stem}.png\n"
     with atomic(path) as temporary:
@@ -71,19 +71,9 @@ def read_textured_obj(path: Path) -> TexturedMesh:
     return TexturedMesh(Mesh(vertices, joined.ravel()[cut.faces]), places[cut.faces], texels)
 
 
-def _scale_places(places: np.ndarray, image: np.ndarray) -> np.ndarray:
-    """Return places (N, 2) in texels, columns and rows, as u to the right and v up in [0, 1]."""
-    height, width = image.shape[:2]
-    u, v = ((places + 0.5) / [width, height]).T
-    return np.stack([u, 1 - v], axis=1)
-
-
 def _assemble(textured: TexturedMesh, material: PBRMaterial) -> trimesh.Trimesh:
     """Return the mesh for trimesh, vertices once for each place in the picture."""
-    faces = textured.mesh.faces
-    keys = np.concatenate([faces.reshape(-1, 1), textured.corners.reshape(-1, 2)], axis=1)
-    kept, corner = np.unique(keys, axis=0, return_inverse=True)
-    vertices = textured.mesh.vertices[kept[:, 0].astype(np.int64)]
-    made = trimesh.Trimesh(vertices, corner.reshape(faces.shape), process=False)
-    made.visual = trimesh.visual.TextureVisuals(uv=_scale_places(kept[:, 1:], textured.image), material=material)
+    cut = cut_charts(textured)
+    made = trimesh.Trimesh(textured.mesh.vertices[cut.vertex], cut.faces, process=False)
+    made.visual = trimesh.visual.TextureVisuals(uv=cut.places, material=material)
     return made

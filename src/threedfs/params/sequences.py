@@ -15,7 +15,7 @@ from threedfs.params.rendered import bring_render, find_films
 SEQUENCE_FILES = ("source", "cameras", "calibration", "truth_masks", "truth_cameras", "truth_mesh", "truth_depth")
 """What a sequence's entry names: files and folders that must be there."""
 
-_RUN_FILES = {"README.md", "benchmarks", "logs", "metrics.csv", "plots", "tables"}
+RUN_FILES = {"README.md", "benchmarks", "logs", "metrics.csv", "plots", "tables"}
 
 _DEPTH_SCALE = 1000.0  # levels of a true depth image in a metre: millimetres
 
@@ -88,10 +88,10 @@ def list_sequences(
         if not re.match(SEQUENCE_NAME, name):
             raise UserError(explain_name(name, f"the file {config['video']}; rename it, or list it under sequences"))
         given = {name: {"source": config["video"]}}
-    taken = sorted(_RUN_FILES & set(given))
+    taken = sorted(RUN_FILES & set(given))
     if taken:
         raise UserError(
-            f"sequences: expected other names than {', '.join(sorted(_RUN_FILES))}, which the run itself writes in "
+            f"sequences: expected other names than {', '.join(sorted(RUN_FILES))}, which the run itself writes in "
             f"results, found {taken[0]}; rename it."
         )
     films = find_films(given)

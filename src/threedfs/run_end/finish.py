@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Callable, Collection, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from threedfs.evaluate.costs import cost_figures
@@ -55,6 +55,10 @@ class Run:
         The tables of metrics that rule collect puts together.
     seed : int
         Of the confidence intervals.
+    changes : mapping of str to mapping of str to str
+        Of each sequence, the settings that differ from the defaults.
+    versions : mapping of str to str
+        Of the libraries.
     """
 
     results: Path
@@ -64,6 +68,8 @@ class Run:
     methods: tuple[str, ...]
     tables: tuple[Path, ...]
     seed: int
+    changes: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    versions: Mapping[str, str] = field(default_factory=dict)
 
 
 def finish_run(run: Run, unfinished: Collection[str] = ()) -> str:
@@ -110,6 +116,33 @@ def finish_run(run: Run, unfinished: Collection[str] = ()) -> str:
     _write_all(run.results / "benchmarks", ".md", _lay_out(scores, by_stage))
     _write_all(run.results / "plots", ".svg", _draw_plots(scores))
     return f"\n{_summarise(scores)}\n\nTables and plots: {run.results}/tables, {run.results}/plots\n{refused}"
+
+
+def report_run(run: Run, note: Callable[[str], object]) -> None:
+    """Write `report.html` into the folder of each sequence whose results are newer, or that failed.
+
+    Parameters
+    ----------
+    run : Run
+    note : callable
+        Takes a sentence for a report that could not be made.
+    """
+    # pictures and meshes are read: what takes as long to import as a run with nothing to do
+    from threedfs.run_end.report import Context, write_reports
+
+    failures = find_failures(run.results, run.started)
+    metrics = [metric for path in run.tables if path.is_file() for metric in read_metrics(path)]
+
+    def describe(sequence: str) -> Context:
+        return Context(
+            run.store,
+            [metric for metric in metrics if metric.sequence == sequence],
+            [f"{failure.stage}: {failure.sentence}" for failure in failures if failure.sequence == sequence],
+            run.changes.get(sequence, {}),
+            run.versions,
+        )
+
+    write_reports([run.results / name for name in run.datasets], describe, note)
 
 
 def _lay_out(scores: Scores, makers: Mapping[str, Callable[[Scores, str], list[Table]]]) -> dict[str, str]:

@@ -1,0 +1,1 @@
+"""The command `threedfs`: the workflow for people who do not know Snakemake."""

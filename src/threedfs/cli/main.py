@@ -1,0 +1,115 @@
+"""The command line of `threedfs`."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+import webbrowser
+from collections.abc import Sequence
+from pathlib import Path
+
+from threedfs.cli.request import QUALITIES, read_height
+from threedfs.errors import UserError
+
+_METHODS = {
+    "surface": "confirmed depth and the hull of the masks: the mesh to keep, with photographs on it",
+    "sdf_2d3d_voxel": "the fused field inside of the voxels of the joint cut: the paper's mesh",
+    "gc_2d3d_pixel": "masks by the joint cut of images and voxels",
+    "gc_2d3d_voxel": "the voxels of the joint cut",
+    "gc_select": "their largest piece",
+    "gc_2d": "masks by a cut of the images alone, by colour",
+    "volumetric_gc": "voxels cut by colour alone",
+    "fused_sdf": "the depth maps fused, each view weighed by how far it is trusted",
+    "deformed_sdf": "the same, its surface moved onto surface points",
+    "tsdf": "the weighted average of KinectFusion",
+    "soft_maximum": "the paper's soft maximum as printed (Eq. 15)",
+    "hard_maximum": "the hard maximum (Eq. 13)",
+    "poisson": "Poisson reconstruction of the surface points alone",
+}
+
+
+def main(words: Sequence[str] | None = None) -> int:
+    """Do what the command line says; return the exit status."""
+    arguments = _make_parser().parse_args(words)
+    try:
+        return arguments.act(arguments)
+    except UserError as fault:
+        print(f"threedfs: {str(fault).removeprefix('threedfs: ')}", file=sys.stderr)
+        return 1
+    except BrokenPipeError:  # the reader of our output, such as head, has gone
+        return 1
+
+
+def _make_parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="threedfs", description="Film one object; get a closed mesh of it alone, and a mask in every keyframe."
+    )
+    actions = parser.add_subparsers(required=True, metavar="COMMAND")
+
+    run = actions.add_parser("run", help="reconstruct a video or a folder of photos")
+    run.add_argument("video", nargs="+", help="a video (mp4, mov, ...) or a folder of photos of one object")
+    run.add_argument("--out", default=".", help="folder that gets results/NAME and the files to print (here)")
+    run.add_argument("--height", help="true height of the object, as 95mm: writes NAME.stl and NAME.glb to scale")
+    run.add_argument("--quality", choices=QUALITIES, default="normal", help="draft is fast, fine is slow")
+    run.add_argument("--cores", type=_read_cores, default=os.cpu_count() or 1, help="cores to use (all)")
+    run.add_argument("--set", action="append", metavar="STAGE.KEY=VALUE", help="change a parameter; can be repeated")
+    run.set_defaults(act=_run)
+
+    show = actions.add_parser("show", help="open the report of a sequence in the browser")
+    show.add_argument("results", type=Path, help="its folder, as results/my")
+    show.set_defaults(act=_show)
+
+    export = actions.add_parser("export", help="write a mesh upright and to scale, as stl, ply, obj or glb")
+    export.add_argument("results", type=Path, help="folder of a sequence, as results/my")
+    export.add_argument("file", type=Path, help="what to write; its ending tells the format")
+    export.add_argument("--height", required=True, help="true height, as 95mm; written in mm, in metres to glb")
+    export.add_argument("--method", default="surface", help="whose mesh (surface)")
+    export.set_defaults(act=_export)
+
+    methods = actions.add_parser("methods", help="list the ways to a mesh or masks")
+    methods.set_defaults(act=_list_methods)
+    return parser
+
+
+def _run(arguments: argparse.Namespace) -> int:
+    # numeric libraries take a second to import: --help need not wait for them
+    from threedfs.cli.run import run
+
+    return run(arguments)
+
+
+def _show(arguments: argparse.Namespace) -> int:
+    page = (arguments.results / "report.html").resolve()
+    if not page.is_file():
+        raise UserError(
+            f"{page}: expected the report of a run, found none; correct the folder, or run the video first."
+        )
+    print(page)
+    webbrowser.open(page.as_uri())
+    return 0
+
+
+def _export(arguments: argparse.Namespace) -> int:
+    from threedfs.run_end.export import export
+
+    size = read_height(arguments.height) / (1000 if arguments.file.suffix.lower() == ".glb" else 1)
+    export(arguments.results, str(size), arguments.file, arguments.method)
+    print(arguments.file)
+    return 0
+
+
+def _list_methods(arguments: argparse.Namespace) -> int:
+    for name, meaning in _METHODS.items():
+        print(f"{name:15} {meaning}")
+    return 0
+
+
+def _read_cores(text: str) -> int:
+    if not text.isdigit() or int(text) < 1:
+        raise argparse.ArgumentTypeError(f"expected a whole number of at least 1, got {text!r}")
+    return int(text)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,133 @@
+"""`threedfs run`: from a video to a mesh with one command."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from argparse import Namespace
+from collections.abc import Sequence
+from pathlib import Path
+
+import yaml
+
+from threedfs.cli.home import find_home
+from threedfs.cli.progress import Progress, tell_time
+from threedfs.cli.request import Request, list_requests, make_configuration, read_height, read_settings
+from threedfs.errors import UserError
+from threedfs.report.findings import sum_up
+from threedfs.run_end.export import export
+from threedfs.run_end.report import find_out
+
+_PATIENCE = 20.0
+"""Seconds that a run has to end by itself after it was interrupted."""
+_INTERRUPTED = 130
+
+
+def run(arguments: Namespace) -> int:
+    """Reconstruct videos and say where the meshes are; return the exit status.
+
+    Raises
+    ------
+    UserError
+        If something that was asked for cannot be.
+    """
+    begun = time.monotonic()
+    requests, changes = list_requests(arguments.video), read_settings(arguments.set or [])
+    height = read_height(arguments.height) if arguments.height else None
+    out = Path(arguments.out).expanduser().resolve()
+    for request in requests:
+        if request.name != request.source.stem:
+            print(f"{request.source.name} is called {request.name} in the results.")
+    status, said = _reconstruct(requests, changes, out, arguments.quality, arguments.cores)
+    if status == _INTERRUPTED:
+        print("threedfs: not finished; the same command goes on where it was stopped.", file=sys.stderr)
+        return status
+    for request in requests:
+        _conclude(request, out, height)
+    print(f"time     {tell_time(time.monotonic() - begun)}")
+    for sentence in dict.fromkeys(line for line in said if line.startswith("threedfs: ")):
+        print(sentence, file=sys.stderr)
+    if status and not any(line.startswith("threedfs: ") for line in said):
+        print(f"threedfs: the run failed; its last words are in {_log_of(out, requests)}.", file=sys.stderr)
+    return 1 if status else 0
+
+
+def _reconstruct(
+    requests: Sequence[Request], changes: dict, out: Path, quality: str, cores: int
+) -> tuple[int, list[str]]:
+    """Run the workflow in a folder; return its exit status and all that it said."""
+    home = find_home()
+    log = _log_of(out, requests)
+    try:
+        log.parent.mkdir(parents=True, exist_ok=True)
+        asked = log.with_name("request.yaml")
+        asked.write_text(yaml.safe_dump(make_configuration(requests, changes), sort_keys=False), encoding="utf-8")
+    except OSError as fault:
+        raise UserError(f"--out: expected a folder to write results to, got {out}: {fault.strerror}.") from None
+    preset = [] if quality == "normal" else [str(home / "config/presets" / f"{quality}.yaml")]
+    command = [
+        *(sys.executable, "-m", "snakemake", "--snakefile", str(home / "Snakefile"), "--directory", str(out)),
+        *("--workflow-profile", str(home / "profiles/default")),
+        *("--cores", str(cores), "--keep-going", "--configfile", *preset, str(asked)),
+    ]
+    progress, said, stopped = Progress(), [], False
+    running = subprocess.Popen(
+        command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True
+    )
+    with open(log, "w", encoding="utf-8") as file:
+        while True:
+            try:
+                for line in running.stdout:
+                    file.write(line)
+                    file.flush()
+                    said.append(line.rstrip())
+                    progress.follow(line.rstrip())
+                break
+            except KeyboardInterrupt:
+                stopped = True
+                _stop(running)
+    status = running.wait()
+    progress.show(last=True)
+    return (_INTERRUPTED if stopped else status), said
+
+
+def _stop(running: subprocess.Popen) -> None:
+    """Ask a run to end, and end it and its jobs if it does not."""
+    running.send_signal(signal.SIGINT)
+    try:
+        running.wait(_PATIENCE)
+    except (subprocess.TimeoutExpired, KeyboardInterrupt):
+        os.killpg(running.pid, signal.SIGTERM)
+
+
+def _log_of(out: Path, requests: Sequence[Request]) -> Path:
+    return out / "results" / requests[0].name / "run.txt"
+
+
+def _conclude(request: Request, out: Path, height: float | None) -> None:
+    """Say what a run made of a video, and write the files for printing if its height is known."""
+    folder = out / "results" / request.name
+    meshes = {"mesh": folder / "11_object/surface/mesh.glb", "detail": folder / "11_object/surface/mesh.ply"}
+    if not meshes["detail"].is_file():
+        return
+    for what, path in meshes.items():
+        if path.is_file():
+            print(f"{what:8} {path}")
+    if height is not None:
+        for ending, unit, size in ((".stl", "mm", height), (".glb", "m", height / 1000)):
+            file = out / f"{request.name}{ending}"
+            export(folder, str(size), file)
+            print(f"{ending[1:]:8} {file}, {size:g} {unit} tall")
+    masks = folder / "11_object/gc_2d3d_pixel/masks"
+    if masks.is_dir():
+        print(f"masks    {masks}, {len(list(masks.glob('*.png')))} of them")
+    if (folder / "report.html").is_file():
+        print(f"report   {folder / 'report.html'}")
+    findings = find_out(folder)
+    print(f"verdict  {sum_up(findings)}")
+    for finding in findings:
+        if not finding.good:
+            print(f"         {finding.advice}")

@@ -1,0 +1,169 @@
+"""What a user should know of a reconstruction before trusting it: each check with its margin and its advice."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One check.
+
+    Attributes
+    ----------
+    what, value, expected : str
+        What was looked at, what came, and what is good.
+    good : bool
+    advice : str
+        What to do if it is not.
+    """
+
+    what: str
+    value: str
+    expected: str
+    good: bool
+    advice: str
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What the checks look at.
+
+    Attributes
+    ----------
+    posed, frames : int
+        Frames with a pose, and all.
+    quality : mapping of str to float
+        The figures of the poses.
+    widest_gap : float
+        Degrees around the object from which no camera looked.
+    margin_used : float or None
+        Share of the box's margin that the object takes up; above 1 it reaches out of the box.
+    closed : bool
+    pieces, genus : int
+        Of the mesh.
+    confirmed : float or None
+        Share of the surface that photographs agree on.
+    """
+
+    posed: int
+    frames: int
+    quality: Mapping[str, float]
+    widest_gap: float
+    margin_used: float | None
+    closed: bool
+    pieces: int
+    genus: int
+    confirmed: float | None
+
+
+_SLOWER = "film slower, in one take, with more of the surroundings in view"
+_LEAST_POSED, _WIDEST_GAP, _LEAST_ANGLE, _LARGEST_ERROR, _LARGEST_STEP = 0.95, 75.0, 6.0, 1.0, 6.0
+_LEAST_CONFIRMED, _MOST_HANDLES = 0.65, 12
+
+
+def judge(facts: Facts) -> list[Finding]:
+    """Return all checks, those that failed first.
+
+    The limits are stricter than the gates that stop a run: what passes a gate by little is worth a look.
+    """
+    share, quality = facts.posed / max(facts.frames, 1), facts.quality
+    found = [
+        Finding(
+            "frames placed",
+            f"{facts.posed} of {facts.frames}",
+            f"at least {_LEAST_POSED:.0%}",
+            share >= _LEAST_POSED,
+            f"Parts of the video could not be placed: {_SLOWER}.",
+        ),
+        Finding(
+            "widest side without a view",
+            f"{facts.widest_gap:.0f} degrees",
+            f"at most {_WIDEST_GAP:.0f}",
+            facts.widest_gap <= _WIDEST_GAP,
+            "The object was not filmed from there, so that side of the mesh is a guess: walk all the way around.",
+        ),
+    ]
+    if "triangulation_angle" in quality:
+        angle = quality["triangulation_angle"]
+        found.append(
+            Finding(
+                "angle between rays to a point",
+                f"{angle:.1f} degrees",
+                f"at least {_LEAST_ANGLE:.0f}",
+                angle >= _LEAST_ANGLE,
+                "The camera hardly moved around the object, so depth is uncertain: walk around it.",
+            )
+        )
+    if "reprojection_error" in quality:
+        error = quality["reprojection_error"]
+        found.append(
+            Finding(
+                "error of the cameras",
+                f"{error:.2f} pixels",
+                f"at most {_LARGEST_ERROR:.1f}",
+                error <= _LARGEST_ERROR,
+                "Something moved, or the phone's stabilisation bent the picture: keep the scene still, turn it off.",
+            )
+        )
+    if "step_ratio" in quality:
+        step = quality["step_ratio"]
+        found.append(
+            Finding(
+                "largest step of the camera over its usual step",
+                f"{step:.1f}",
+                f"at most {_LARGEST_STEP:.0f}",
+                step <= _LARGEST_STEP,
+                f"The path may jump: {_SLOWER}.",
+            )
+        )
+    if facts.margin_used is not None:
+        found.append(
+            Finding(
+                "room around the object in its box",
+                f"{max(0.0, 1 - facts.margin_used):.0%} free",
+                "more than 0 %",
+                facts.margin_used < 1,
+                "The object reaches the side of its box and may be cut off: raise locate.box_margin.",
+            )
+        )
+    found.append(
+        Finding(
+            "mesh",
+            f"{'closed' if facts.closed else 'open'}, in {facts.pieces} piece{'s' * (facts.pieces != 1)}",
+            "closed, in 1 piece",
+            facts.closed and facts.pieces == 1,
+            "A printer needs a closed mesh in one piece: repair it in a mesh editor, or use the method surface.",
+        )
+    )
+    found.append(
+        Finding(
+            "handles and tunnels",
+            f"{facts.genus}",
+            f"at most {_MOST_HANDLES}",
+            facts.genus <= _MOST_HANDLES,
+            "The surface is full of tunnels where depth is wrong; matt spray or talcum helps on shiny things.",
+        )
+    )
+    if facts.confirmed is not None:
+        found.append(
+            Finding(
+                "surface that photographs agree on",
+                f"{facts.confirmed:.0%}",
+                f"at least {_LEAST_CONFIRMED:.0%}",
+                facts.confirmed >= _LEAST_CONFIRMED,
+                "Bare or shiny faces: the shape there comes from outlines alone. Use soft light, or matt spray.",
+            )
+        )
+    return sorted(found, key=lambda finding: finding.good)
+
+
+def sum_up(findings: list[Finding]) -> str:
+    """Return one sentence on the whole."""
+    bad = [finding for finding in findings if not finding.good]
+    if not bad:
+        return "All checks passed."
+    return f"{len(bad)} of {len(findings)} checks deserve a look: " + "; ".join(
+        f"{finding.what} {finding.value}" for finding in bad
+    )

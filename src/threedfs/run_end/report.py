@@ -1,0 +1,232 @@
+"""The report of a sequence: one page to look at, from what lies in its folder of results."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from threedfs.errors import UserError
+from threedfs.evaluate.costs import cost_figures
+from threedfs.evaluate.figures import soundness_figures
+from threedfs.evaluate.scores import Metric
+from threedfs.geometry.projection import normals_from_depth
+from threedfs.io.atomic import atomic
+from threedfs.io.colored_meshes import read_colored_mesh, read_vertex_property
+from threedfs.io.crops import read_crops
+from threedfs.io.depth_maps import read_depth_map
+from threedfs.io.keyframes import read_keyframes
+from threedfs.io.poses import read_poses
+from threedfs.io.textured_meshes import read_textured_obj
+from threedfs.io.volumes import read_silhouettes, read_support
+from threedfs.report.camera_path import draw_path, widest_gap
+from threedfs.report.findings import Facts, Finding, judge
+from threedfs.report.page import KeyframePictures, Report, write_page
+from threedfs.report.pictures import color_depth, color_normals, embed_image, outline_mask
+from threedfs.report.viewer import embed_viewer
+from threedfs.run_end.logs import read_actions
+from threedfs.texture.photograph import photograph_texture, photograph_vertices
+from threedfs.types import Keyframe
+
+_LONGEST, _STILL = 420, 900
+"""Pixels along the longer side of a keyframe's pictures, and of the mesh's."""
+_AGREED = 0.5
+"""Share of the photographs at a vertex that must agree on it."""
+_MESHES = ("surface", "sdf_2d3d_voxel", "fused_sdf")
+"""Methods whose mesh is shown, the first that was run."""
+_WATCHED = ("12_evaluate/*.csv", "12_evaluate/*/*.csv", "11_object/*/mesh.ply", "02_poses/poses.json", "logs/*.log")
+"""Files that a report is older than, if it is out of date."""
+_MASKS = ("gc_2d3d_pixel", "surface", "sdf_2d3d_voxel", "fused_sdf")
+_FILES = {
+    "the object with photographs on it, upright: open it in any viewer": "mesh.glb",
+    "the object in full detail": "mesh.ply",
+    "the object with photographs on it, for other programs": "textured/mesh.obj",
+}
+
+
+@dataclass(frozen=True)
+class Context:
+    """What the page tells that does not lie in the folder.
+
+    Attributes
+    ----------
+    store : Path
+    metrics : sequence of Metric
+        Of the sequence.
+    failures : sequence of str
+        Sentences of its jobs that failed.
+    settings : mapping of str to str
+        Those that differ from the defaults.
+    versions : mapping of str to str
+    """
+
+    store: Path
+    metrics: Sequence[Metric] = ()
+    failures: Sequence[str] = ()
+    settings: Mapping[str, str] = field(default_factory=dict)
+    versions: Mapping[str, str] = field(default_factory=dict)
+
+
+def write_report(folder: Path, context: Context) -> Path:
+    """Write report.html into the folder of a sequence's results; what is not there yet is left out."""
+    known = _gather(folder)
+    report = Report(
+        folder.name,
+        failures=tuple(context.failures),
+        findings=tuple(find_out(folder)),
+        viewer=_show_mesh(folder, known),
+        path=draw_path(list(known.poses.views), known.keyframes, known.place) if known.place else "",
+        keyframes=tuple(_picture_keyframes(folder, known)),
+        files=_find_files(folder),
+        left_out=known.poses.unposed if known.poses else (),
+        scores=_tabulate(context.metrics),
+        costs=tuple(_find_costs(folder, context.store)),
+        settings=context.settings,
+        versions=context.versions,
+    )
+    with atomic(folder / "report.html") as temporary:
+        temporary.write_text(write_page(report), encoding="utf-8")
+    return folder / "report.html"
+
+
+def write_reports(folders: Sequence[Path], contexts: Callable[[str], Context], note: Callable[[str], object]) -> None:
+    """Write the report of each sequence whose results are newer than it, or one of whose jobs has failed.
+
+    Parameters
+    ----------
+    folders : sequence of Path
+        Of the sequences' results.
+    contexts : callable
+        Gives what else is known of a sequence, by its name.
+    note : callable
+        Takes a sentence for a report that could not be made: that ends no run.
+    """
+    for folder in folders:
+        context = contexts(folder.name)
+        page = folder / "report.html"
+        made = [path for pattern in _WATCHED for path in folder.glob(pattern)]
+        newest = max((path.stat().st_mtime for path in made), default=0.0)
+        if not made or (page.is_file() and page.stat().st_mtime >= newest and not context.failures):
+            continue
+        try:
+            write_report(folder, context)
+        except Exception as fault:
+            note(f"the report of {folder.name} was not made: {type(fault).__name__}: {fault}")
+
+
+def find_out(folder: Path) -> list[Finding]:
+    """Return what is to be known of a sequence's results before trusting them; nothing without a mesh."""
+    known = _gather(folder)
+    if known.place is None or known.method is None:
+        return []
+    path = folder / "11_object" / known.method / "mesh.ply"
+    mesh, _ = read_colored_mesh(path)
+    sound = {figure.name: figure.value for figure in soundness_figures(mesh)}
+    agreed = read_vertex_property(path, "confirmed")
+    return judge(
+        Facts(
+            posed=len(known.poses.views),
+            frames=len(known.poses.views) + len(known.poses.unposed),
+            quality=known.poses.quality,
+            widest_gap=widest_gap(list(known.poses.views), known.place),
+            margin_used=known.place.figures.get("margin_used"),
+            closed=bool(sound["mesh_closed"]),
+            pieces=int(sound["mesh_pieces"]),
+            genus=int(sound.get("mesh_genus", 0)),
+            confirmed=None if agreed is None else float((agreed >= _AGREED).mean()),
+        )
+    )
+
+
+@dataclass(frozen=True)
+class _Known:
+    """What lies in a folder of results, None where the run did not come so far."""
+
+    poses: object = None
+    place: object = None
+    keyframes: Mapping[str, Keyframe] = field(default_factory=dict)
+    method: str | None = None
+
+
+def _gather(folder: Path) -> _Known:
+    places = {
+        "poses": (folder / "02_poses/poses.json", read_poses),
+        "place": (folder / "03_scene/support.json", read_support),
+        "keyframes": (folder / "04_crops/keyframes.json", read_keyframes),
+    }
+    found = {}
+    for name, (path, read) in places.items():
+        try:
+            found |= {name: read(path)} if path.is_file() else {}
+        except UserError:  # damaged: the run says so when it needs it
+            continue
+    if "poses" not in found:
+        return _Known()
+    method = next((name for name in _MESHES if (folder / "11_object" / name / "mesh.ply").is_file()), None)
+    return _Known(**found, method=method)
+
+
+def _show_mesh(folder: Path, known: _Known) -> str:
+    if known.place is None or known.method is None or not known.keyframes:
+        return ""
+    own = folder / "11_object" / known.method
+    if (own / "textured/mesh.obj").is_file():
+        surface = read_textured_obj(own / "textured/mesh.obj")
+        photographer = photograph_texture(surface)
+    else:
+        surface, colors = read_colored_mesh(own / "mesh.ply")
+        plain = np.full((len(surface.vertices), 3), 180.0)
+        photographer = photograph_vertices(surface, plain if colors is None else colors.astype(np.float64))
+    views = list(known.poses.views)
+    image, shown = photographer.take(next(iter(known.keyframes.values())).view)
+    still = np.where(shown[..., None], image.clip(0, 255), 244).astype(np.uint8)
+    return embed_viewer(surface, known.place.plane, views, embed_image(still, _STILL))
+
+
+def _picture_keyframes(folder: Path, known: _Known) -> Iterator[KeyframePictures]:
+    crops = folder / "04_crops/crops.zarr.zip"
+    if not crops.is_file():
+        return
+    store = read_crops(crops)
+    drawn = (folder / "11_object" / method / "silhouettes.zarr.zip" for method in _MASKS)
+    masks = next((read_silhouettes(path) for path in drawn if path.is_file()), {})
+    for name, keyframe in known.keyframes.items():
+        image, depth = store.image(name), folder / f"06_depth/{name}.zarr.zip"
+        pictures = {"photograph": image}
+        if name in masks and masks[name].shape == image.shape[:2]:
+            pictures = {"mask": outline_mask(image, masks[name])} | pictures
+        if depth.is_file():
+            seen = read_depth_map(depth).depth
+            pictures["depth"] = color_depth(seen, keyframe)
+            pictures["normals"] = color_normals(normals_from_depth(keyframe.view.camera, seen))
+        yield KeyframePictures(name, {kind: embed_image(each, _LONGEST, 75) for kind, each in pictures.items()})
+
+
+def _find_files(folder: Path) -> dict[str, str]:
+    files = {
+        what: f"11_object/{method}/{name}"
+        for method in _MESHES[:1]
+        for what, name in _FILES.items()
+        if (folder / "11_object" / method / name).is_file()
+    }
+    masks = next((m for m in _MASKS if (folder / "11_object" / m / "masks").is_dir()), None)
+    return files | ({"a mask of the object in every keyframe": f"11_object/{masks}/masks"} if masks else {})
+
+
+def _tabulate(metrics: Sequence[Metric]) -> dict[str, dict[str, str]]:
+    scores: dict[str, dict[str, str]] = defaultdict(dict)
+    for metric in metrics:
+        if not metric.keyframe and not metric.name.startswith(("seconds", "peak_memory", "bytes")):
+            unit = "" if metric.unit == "1" else f" {metric.unit}"
+            scores[metric.method][metric.name] = f"{metric.value:.4g}{unit}"
+    return dict(scores)
+
+
+def _find_costs(folder: Path, store: Path) -> Iterator[tuple[str, float, float]]:
+    figures = {figure.name: figure.value for figure in cost_figures(read_actions(folder, store))}
+    stages = [name.removeprefix("seconds_") for name in figures if name.startswith("seconds_")]
+    for stage in sorted(stages, key=lambda stage: -figures[f"seconds_{stage}"]):
+        yield stage, figures[f"seconds_{stage}"], figures[f"peak_memory_{stage}"]
