@@ -53,6 +53,7 @@ def test_every_module_of_parameters_is_a_stage():
         "fusion",
         "component",
         "rendered",
+        "changes",
         "rules",
         "sequences",
         "smoothing",

@@ -31,7 +31,7 @@ _SECONDS = {
     "evaluate": (3,),
     "evaluate_reconstruction": (2,),
 }
-"""Seconds of a rule's first, second, ... job on a phone video of 24 keyframes, on two cores: only their shares count."""
+"""Seconds of a rule's first, second, ... job on a phone video with 24 keyframes, on two cores; shares alone count."""
 _OTHER = 5.0
 _EARLIEST = 0.04
 """Share of the work after which the time that is left is told."""

@@ -19,8 +19,9 @@ from threedfs.cli.request import Request, list_requests, make_configuration, rea
 from threedfs.errors import UserError
 from threedfs.report.findings import sum_up
 from threedfs.run_end.export import export
-from threedfs.run_end.report import find_out
+from threedfs.run_end.report import find_method, find_out
 
+_MESHES = {"mesh": "mesh.glb", "detail": "mesh.ply"}
 _PATIENCE = 20.0
 """Seconds that a run has to end by itself after it was interrupted."""
 _INTERRUPTED = 130
@@ -47,7 +48,8 @@ def run(arguments: Namespace) -> int:
         return status
     for request in requests:
         _conclude(request, out, height)
-    print(f"time     {tell_time(time.monotonic() - begun)}")
+    if not status:
+        print(f"time     {tell_time(time.monotonic() - begun)}")
     for sentence in dict.fromkeys(line for line in said if line.startswith("threedfs: ")):
         print(sentence, file=sys.stderr)
     if status and not any(line.startswith("threedfs: ") for line in said):
@@ -110,23 +112,28 @@ def _log_of(out: Path, requests: Sequence[Request]) -> Path:
 def _conclude(request: Request, out: Path, height: float | None) -> None:
     """Say what a run made of a video, and write the files for printing if its height is known."""
     folder = out / "results" / request.name
-    meshes = {"mesh": folder / "11_object/surface/mesh.glb", "detail": folder / "11_object/surface/mesh.ply"}
-    if not meshes["detail"].is_file():
+    method = find_method(folder)
+    if method is None:
         return
+    meshes = {what: folder / "11_object" / method / name for what, name in _MESHES.items()}
     for what, path in meshes.items():
         if path.is_file():
             print(f"{what:8} {path}")
     if height is not None:
         for ending, unit, size in ((".stl", "mm", height), (".glb", "m", height / 1000)):
             file = out / f"{request.name}{ending}"
-            export(folder, str(size), file)
+            export(folder, str(size), file, method)
             print(f"{ending[1:]:8} {file}, {size:g} {unit} tall")
     masks = folder / "11_object/gc_2d3d_pixel/masks"
     if masks.is_dir():
         print(f"masks    {masks}, {len(list(masks.glob('*.png')))} of them")
     if (folder / "report.html").is_file():
         print(f"report   {folder / 'report.html'}")
-    findings = find_out(folder)
+    try:
+        findings = find_out(folder)
+    except (UserError, KeyError, ValueError, OSError) as fault:  # results were damaged: the meshes are named above
+        print(f"verdict  none, as results cannot be read: {fault}")
+        return
     print(f"verdict  {sum_up(findings)}")
     for finding in findings:
         if not finding.good:

@@ -141,6 +141,11 @@ def find_out(folder: Path) -> list[Finding]:
     )
 
 
+def find_method(folder: Path) -> str | None:
+    """Return the method whose mesh of a sequence is the one to look at, None without any mesh."""
+    return next((name for name in _MESHES if (folder / "11_object" / name / "mesh.ply").is_file()), None)
+
+
 @dataclass(frozen=True)
 class _Known:
     """What lies in a folder of results, None where the run did not come so far."""
@@ -165,8 +170,7 @@ def _gather(folder: Path) -> _Known:
             continue
     if "poses" not in found:
         return _Known()
-    method = next((name for name in _MESHES if (folder / "11_object" / name / "mesh.ply").is_file()), None)
-    return _Known(**found, method=method)
+    return _Known(**found, method=find_method(folder))
 
 
 def _show_mesh(folder: Path, known: _Known) -> str:

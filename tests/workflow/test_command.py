@@ -1,0 +1,126 @@
+"""Workflow: the command on a copy of the project whose stages are stand-ins."""
+
+from __future__ import annotations
+
+import signal
+import subprocess
+import sys
+import time
+
+import pytest
+
+import threedfs.cli.main as command
+from threedfs.params.configuration import METHODS
+
+STATIC = "static: the camera hardly moves."
+
+
+@pytest.fixture
+def call(project, tmp_path):
+    """Call the copy's command in an empty folder; return status and output."""
+
+    def run(*words):
+        done = subprocess.run(
+            [sys.executable, "-m", "threedfs.cli.main", *words],
+            cwd=tmp_path,
+            env=project.environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
+            check=False,
+        )
+        return done.returncode, done.stdout
+
+    return run
+
+
+def test_a_video_of_any_name_is_reconstructed_in_another_folder(call, tmp_path):
+    (tmp_path / "My Video (1).mov").write_text("film")
+    status, output = call("run", "My Video (1).mov", "--out", "made", "--cores", "2")
+    assert status == 0, output
+    folder = tmp_path / "made/results/My_Video_1"
+    assert "My Video (1).mov is called My_Video_1" in output
+    assert f"detail   {folder}/11_object/fused_sdf/mesh.ply" in output
+    assert "%  0:" in output and "time     0:" in output
+    assert (folder / "run.txt").is_file() and not (tmp_path / "results").exists()
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (["lost.mp4"], "lost.mp4: expected a video or a folder of photos, found nothing there."),
+        (["mug.mp4", "--height", "tall"], "--height: expected a length such as 95mm"),
+        (["mug.mp4", "--set", "depth"], "--set: expected STAGE.PARAMETER=VALUE"),
+        (["mug.mp4", "--set", "depth.iteration=5"], "configuration, depth: unknown key iteration"),
+        (
+            ["mug.mp4", "--set", "depth.iterations=many"],
+            "configuration, depth.iterations: expected integer, got 'many'",
+        ),
+        (["mug.mp4", "--set", "nothing=5"], "configuration: unknown key nothing"),
+        (["mug.mp4", "--out", "mug.mp4"], "--out: expected a folder to write results to"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_one_sentence(call, tmp_path, words, sentence):
+    (tmp_path / "mug.mp4").write_text("film")
+    status, output = call("run", *words)
+    assert status == 1
+    assert f"threedfs: {sentence}" in output
+    assert "Traceback" not in output
+    assert not list(tmp_path.glob("results/*/1*"))
+
+
+def test_a_job_that_fails_ends_in_its_sentence(call, project, tmp_path):
+    (tmp_path / "mug.mp4").write_text("film")
+    project.edit(
+        "src/threedfs/stages/poses.py",
+        "    write(",
+        f"    from threedfs.errors import UserError\n    raise UserError({STATIC!r})\n    write(",
+    )
+    status, output = call("run", "mug.mp4")
+    assert status == 1
+    assert output.rstrip().splitlines()[-1] == f"threedfs: poses of mug: {STATIC}"
+    assert "camera hardly moves" in (tmp_path / "results/mug/report.html").read_text()
+
+
+def test_an_interrupted_run_says_how_to_go_on_and_leaves_nobody(project, tmp_path):
+    (tmp_path / "mug.mp4").write_text("film")
+    project.edit("src/threedfs/stages/poses.py", "    write(", "    import time\n    time.sleep(60)\n    write(")
+    running = subprocess.Popen(
+        [sys.executable, "-m", "threedfs.cli.main", "run", "mug.mp4"],
+        cwd=tmp_path,
+        env=project.environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+    )
+    until = time.monotonic() + 60
+    while not (tmp_path / "results/mug/logs/poses.log").is_file() and time.monotonic() < until:
+        time.sleep(0.2)
+    running.send_signal(signal.SIGINT)
+    output = running.communicate(timeout=60)[0]
+    assert running.returncode == 130
+    assert output.rstrip().splitlines()[-1] == (
+        "threedfs: not finished; the same command goes on where it was stopped."
+    )
+    assert not _processes_in(tmp_path)
+
+
+def _processes_in(folder):
+    """Return the command lines of processes that work in a folder."""
+    import psutil
+
+    found = []
+    for process in psutil.process_iter(["cwd", "cmdline"]):
+        if process.info["cwd"] == str(folder):
+            found.append(process.info["cmdline"])
+    return found
+
+
+def test_every_method_is_explained(capsys):
+    assert command.main(["methods"]) == 0
+    assert {line.split()[0] for line in capsys.readouterr().out.splitlines()} == set(METHODS)
+
+
+def test_a_report_that_is_not_there_is_named(capsys, tmp_path):
+    assert command.main(["show", str(tmp_path)]) == 1
+    assert "expected the report of a run, found none" in capsys.readouterr().err
