@@ -12,6 +12,8 @@ import cv2
 import numpy as np
 import pytest
 
+import threedfs
+from threedfs.errors import UserError
 from threedfs.io.metrics import read_metrics
 from threedfs.synthetic.video import write_video
 
@@ -90,6 +92,38 @@ def test_the_segmentation_is_measured_with_and_without_a_mesh(run):
     assert found["surface", "mesh_closed"] == found["surface", "mesh_pieces"] == 1
     assert overlap["surface"] > 0.6
     assert found["sdf_2d3d_voxel", "mesh_filled"] > 0 and ("gc_2d3d_pixel", "mesh_closed") not in found
+
+
+def test_the_report_shows_what_was_found_and_the_failed_have_one_too(run):
+    results, _, output = run
+    assert "the report of" not in output
+    page = (results / "gnome/report.html").read_text()
+    assert len(page) < 10e6
+    for part in ('data-page="', "<svg", "Can it be trusted?", "frames placed", "iou_mean", "surface/mesh.glb"):
+        assert part in page, part
+    assert page.count('class="normals"') == page.count('class="mask"') == 3
+    assert "depth.iterations" in page  # differs from the default in this preset
+    assert "the camera is static" in (results / "static/report.html").read_text()
+
+
+def test_results_open_as_arrays(run):
+    made = threedfs.open(run[0] / "gnome")
+    mesh, colors = made.mesh()
+    assert colors.shape == mesh.vertices.shape and colors.dtype == np.uint8
+    assert made.mesh("fused_sdf")[1] is None
+    keyframes, masks = made.keyframes(), made.masks()
+    assert set(keyframes) == set(masks) <= set(made.cameras())
+    for name, keyframe in keyframes.items():
+        shape = keyframe.view.camera.shape
+        assert made.image(name).shape == (*shape, 3) and made.depth(name).depth.shape == shape
+        assert masks[name].shape == (480, 640) and masks[name].dtype == bool
+    assert (made.volume().sdf < 0).any()
+    assert made.support().plane.distance(mesh.vertices).min() > -0.2 * made.support().box.longest
+    assert made.metrics()["surface", "iou_mean"] > 0.6
+    with pytest.raises(UserError, match="expected masks by the method tsdf, found none"):
+        made.masks("tsdf")
+    with pytest.raises(UserError, match="expected the results of a sequence"):
+        threedfs.open(run[0])
 
 
 def test_the_others_are_named_with_their_reason(run):

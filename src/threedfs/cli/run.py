@@ -8,18 +8,20 @@ import subprocess
 import sys
 import time
 from argparse import Namespace
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 import yaml
 
 from threedfs.cli.home import find_home
 from threedfs.cli.progress import Progress, tell_time
-from threedfs.cli.request import Request, list_requests, make_configuration, read_height, read_settings
+from threedfs.cli.request import QUALITIES, Request, list_requests, make_configuration, read_height, read_settings
 from threedfs.errors import UserError
 from threedfs.report.findings import sum_up
 from threedfs.run_end.export import export
 from threedfs.run_end.report import find_method, find_out
+from threedfs.run_end.results import Results, open_results
 
 _MESHES = {"mesh": "mesh.glb", "detail": "mesh.ply"}
 _PATIENCE = 20.0
@@ -55,6 +57,45 @@ def run(arguments: Namespace) -> int:
     if status and not any(line.startswith("threedfs: ") for line in said):
         print(f"threedfs: the run failed; its last words are in {_log_of(out, requests)}.", file=sys.stderr)
     return 1 if status else 0
+
+
+def reconstruct(
+    video: str | Path,
+    out: str | Path = ".",
+    *,
+    quality: str = "normal",
+    cores: int | None = None,
+    settings: Mapping[str, Any] | None = None,
+) -> Results:
+    """Reconstruct the object of a video, or of a folder of photos; what was done before is not done again.
+
+    Parameters
+    ----------
+    video : str or Path
+    out : str or Path
+        Folder that gets `results/NAME`.
+    quality : str
+        draft, normal or fine.
+    cores : int, optional
+        All, if not given.
+    settings : mapping, optional
+        Parameters that differ from the defaults, by stage: `{"depth": {"iterations": 5}}`.
+
+    Raises
+    ------
+    UserError
+        If the run failed, with the sentence that says why.
+    """
+    if quality not in QUALITIES:
+        raise UserError(f"quality: expected one of {', '.join(QUALITIES)}, got {quality}.")
+    requests, folder = list_requests([str(video)]), Path(out).expanduser().resolve()
+    status, said = _reconstruct(requests, dict(settings or {}), folder, quality, cores or os.cpu_count() or 1)
+    if status == _INTERRUPTED:
+        raise KeyboardInterrupt
+    if status:
+        faults = [line.removeprefix("threedfs: ") for line in said if line.startswith("threedfs: ")]
+        raise UserError(" ".join(dict.fromkeys(faults)) or f"the run failed; see {_log_of(folder, requests)}.")
+    return open_results(folder / "results" / requests[0].name)
 
 
 def _reconstruct(
