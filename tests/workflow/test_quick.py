@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -10,11 +12,16 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+import pycolmap
 import pytest
 
 import threedfs
+from threedfs.cli.main import main as command
 from threedfs.errors import UserError
+from threedfs.io.images import read_image, read_mask
 from threedfs.io.metrics import read_metrics
+from threedfs.io.points import read_points
+from threedfs.run_end.export_scene import export_scene
 from threedfs.synthetic.video import write_video
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -124,6 +131,48 @@ def test_results_open_as_arrays(run):
         made.masks("tsdf")
     with pytest.raises(UserError, match="expected the results of a sequence"):
         threedfs.open(run[0])
+
+
+def test_the_code_of_the_documents_runs(run, tmp_path, monkeypatch, capsys):
+    (tmp_path / "results").mkdir()
+    (tmp_path / "results/sample").symlink_to(run[0] / "gnome")
+    monkeypatch.chdir(tmp_path)
+    blocks = re.findall(r"```python\n(.*?)```", (ROOT / "docs/python.md").read_text(), re.DOTALL)
+    assert len(blocks) == 4
+    exec("\n".join(blocks), {})
+    near, share = re.findall(r"([\d.]+)%", capsys.readouterr().out)
+    assert float(near) > 50 and 1 < float(share) < 50
+
+
+def test_other_tools_read_the_exported_scene(run, tmp_path):
+    results = run[0] / "gnome"
+    made = threedfs.open(results)
+    assert command(["export", str(results), str(tmp_path / "scene"), "--scene"]) == 0
+    model = pycolmap.Reconstruction(tmp_path / "scene/sparse/0")
+    cameras = made.cameras()
+    assert {image.name for image in model.images.values()} == {f"{name}.png" for name in cameras}
+    points = read_points(results / "02_poses/points.zarr.zip")
+    assert len(model.points3D) == len(points.xyz)
+    assert model.compute_mean_reprojection_error() == pytest.approx(points.error.mean(), rel=1e-4)
+    transforms = json.loads((tmp_path / "scene/transforms.json").read_text())
+    mesh = made.mesh()[0]
+    for image in model.images.values():
+        name = image.name.removesuffix(".png")
+        np.testing.assert_allclose(image.cam_from_world().matrix(), cameras[name].cam_from_world[:3], atol=1e-6)
+        centre = np.append(mesh.vertices.mean(axis=0), 1)
+        u, v = model.cameras[image.camera_id].img_from_cam(image.cam_from_world() * centre[:3])
+        mask = read_mask(tmp_path / f"scene/masks/{image.name}.png")
+        picture = read_image(tmp_path / f"scene/images/{image.name}")
+        assert mask.shape == picture.shape[:2] == cameras[name].camera.shape
+        if 0 <= u < mask.shape[1] and 0 <= v < mask.shape[0] and mask.any():
+            rows, columns = np.nonzero(mask)
+            assert np.hypot(columns.mean() + 0.5 - u, rows.mean() + 0.5 - v) < 0.2 * max(mask.shape)
+        (entry,) = (frame for frame in transforms["frames"] if frame["file_path"] == f"images/{image.name}")
+        posed = np.linalg.inv(np.array(entry["transform_matrix"]) @ np.diag([1, -1, -1, 1]))
+        np.testing.assert_allclose(posed, cameras[name].cam_from_world, atol=1e-9)
+        assert (tmp_path / "scene" / entry["mask_path"]).is_file()
+    with pytest.raises(UserError, match="expected a mesh by the method tsdf"):
+        export_scene(results, tmp_path / "other", "tsdf")
 
 
 def test_the_others_are_named_with_their_reason(run):

@@ -62,8 +62,9 @@ def _make_parser() -> argparse.ArgumentParser:
 
     export = actions.add_parser("export", help="write a mesh upright and to scale, as stl, ply, obj or glb")
     export.add_argument("results", type=Path, help="folder of a sequence, as results/my")
-    export.add_argument("file", type=Path, help="what to write; its ending tells the format")
-    export.add_argument("--height", required=True, help="true height, as 95mm; written in mm, in metres to glb")
+    export.add_argument("file", type=Path, help="a mesh to write, its ending tells the format; or a folder")
+    export.add_argument("--height", help="true height, as 95mm; written in mm, in metres to glb")
+    export.add_argument("--scene", action="store_true", help="write frames, masks, cameras for other tools")
     export.add_argument("--method", default="surface", help="whose mesh (surface)")
     export.set_defaults(act=_export)
 
@@ -93,6 +94,14 @@ def _show(arguments: argparse.Namespace) -> int:
 def _export(arguments: argparse.Namespace) -> int:
     from threedfs.run_end.export import export
 
+    if arguments.scene:
+        from threedfs.run_end.export_scene import export_scene
+
+        count = export_scene(arguments.results, arguments.file, arguments.method)
+        print(f"{arguments.file}: {count} frames, their masks and cameras, in scene units")
+        return 0
+    if arguments.height is None:
+        raise UserError("export: expected --height, the object's true height, or --scene, got neither.")
     size = read_height(arguments.height) / (1000 if arguments.file.suffix.lower() == ".glb" else 1)
     export(arguments.results, str(size), arguments.file, arguments.method)
     print(arguments.file)

@@ -1,0 +1,116 @@
+"""Cameras, undistorted frames and masks of a sequence, in the layouts that other reconstruction tools read."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from threedfs.crops.resample import resample
+from threedfs.errors import UserError
+from threedfs.geometry.lens import Lens
+from threedfs.io.atomic import atomic
+from threedfs.io.frames import read_frames
+from threedfs.io.images import write_mask, write_png
+from threedfs.io.meshes import read_mesh
+from threedfs.io.points import read_points
+from threedfs.io.poses import read_poses
+from threedfs.object.silhouettes import draw_silhouette
+from threedfs.types import Camera, Mesh, SparsePoints, View
+
+_CORNER = 0.5
+"""COLMAP and nerfstudio count pixels from the corner of the first one, we from its centre."""
+_OPENGL = np.diag([1.0, -1.0, -1.0, 1.0])
+"""From a camera that looks along z with y down to one that looks against z with y up."""
+
+
+def export_scene(sequence: Path, folder: Path, method: str = "surface") -> int:
+    """Write every working frame that has a pose, with its camera and its mask; return how many they are.
+
+    `images/NAME.png` are the frames without distortion, `masks/NAME.png.png` the object in them (white), drawn from the
+    mesh: COLMAP takes that folder as its `mask_path`. `sparse/0` is a COLMAP model in text with the sparse points,
+    `transforms.json` the same cameras for nerfstudio and its kin, with `mask_path`. All in scene units.
+
+    Parameters
+    ----------
+    sequence : Path
+        Folder of its results.
+    folder : Path
+        Made if it is not there.
+    method : str
+        Whose mesh the masks are drawn from.
+
+    Raises
+    ------
+    UserError
+        If the sequence has no cameras, frames or no such mesh.
+    """
+    places = {
+        "cameras": sequence / "02_poses/poses.json",
+        "frames": sequence / "01_frames/frames.zarr.zip",
+        f"a mesh by the method {method}": sequence / "11_object" / method / "mesh.ply",
+    }
+    for what, path in places.items():
+        if not path.is_file():
+            raise UserError(f"{path}: expected {what} of a run, found none; correct {sequence}, or run it first.")
+    posed, mesh = read_poses(places["cameras"]), read_mesh(sequence / "11_object" / method / "mesh.ply")
+    _write_images(folder, posed.views, posed.distortion, read_frames(places["frames"]), mesh)
+    _write_model(folder / "sparse/0", posed.views, read_points(sequence / "02_poses/points.zarr.zip"))
+    _write_json(folder / "transforms.json", _describe_transforms(posed.views))
+    return len(posed.views)
+
+
+def _write_images(folder: Path, views: Sequence[View], distortion: tuple[float, float], frames, mesh: Mesh) -> None:
+    for view in views:
+        image, valid = resample(frames.image(view.name), Lens(view.camera, *distortion), view.camera)
+        write_png(folder / "images" / f"{view.name}.png", image)
+        write_mask(folder / "masks" / f"{view.name}.png.png", draw_silhouette(mesh, view) & valid)
+
+
+def _write_model(folder: Path, views: Sequence[View], points: SparsePoints) -> None:
+    """Write cameras.txt, images.txt and points3D.txt; observations of points are not kept, so tracks are empty."""
+    numbers: dict[Camera, int] = {}
+    for view in views:
+        numbers.setdefault(view.camera, len(numbers) + 1)
+    cameras = [
+        f"{number} PINHOLE {c.width} {c.height} {c.fx:.12g} {c.fy:.12g} {c.cx + _CORNER:.12g} {c.cy + _CORNER:.12g}"
+        for c, number in numbers.items()
+    ]
+    images = []
+    for number, view in enumerate(views, start=1):
+        x, y, z, w = Rotation.from_matrix(view.cam_from_world[:3, :3]).as_quat(canonical=True)
+        pose = " ".join(f"{value:.12g}" for value in (w, x, y, z, *view.cam_from_world[:3, 3]))
+        images += [f"{number} {pose} {numbers[view.camera]} {view.name}.png", ""]
+    cloud = [
+        f"{number} {x:.9g} {y:.9g} {z:.9g} {r} {g} {b} {error:.6g}"
+        for number, ((x, y, z), (r, g, b), error) in enumerate(
+            zip(points.xyz, points.rgb, points.error, strict=True), start=1
+        )
+    ]
+    for name, lines in (("cameras.txt", cameras), ("images.txt", images), ("points3D.txt", cloud)):
+        with atomic(folder / name) as temporary:
+            temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
+
+
+def _describe_transforms(views: Sequence[View]) -> dict:
+    frames = []
+    for view in views:
+        camera = view.camera
+        frames.append(
+            {
+                "file_path": f"images/{view.name}.png",
+                "mask_path": f"masks/{view.name}.png.png",
+                "transform_matrix": (np.linalg.inv(view.cam_from_world) @ _OPENGL).tolist(),
+                **{"w": camera.width, "h": camera.height, "fl_x": camera.fx, "fl_y": camera.fy},
+                **{"cx": camera.cx + _CORNER, "cy": camera.cy + _CORNER},
+            }
+        )
+    return {"camera_model": "OPENCV", "k1": 0.0, "k2": 0.0, "p1": 0.0, "p2": 0.0, "frames": frames}
+
+
+def _write_json(path: Path, content: Mapping) -> None:
+    with atomic(path) as temporary:
+        temporary.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
