@@ -4,7 +4,8 @@ import io
 
 import pytest
 
-from threedfs.cli.progress import Progress, tell_time
+from threedfs.cli.progress import SECONDS, Progress, tell_time
+from threedfs.cli.request import QUALITIES
 
 STATS = ["Job stats:", "job        count", "-------  -------", "frames         1", "depth          2"]
 STATS += ["collect        1", "all            1", "total          5"]
@@ -14,7 +15,7 @@ STATS += ["collect        1", "all            1", "total          5"]
 def followed():
     """A progress that has seen the plan of a run: frames 6, depth 10 and 50."""
     stream = io.StringIO()
-    progress = Progress(stream)
+    progress = Progress(SECONDS["normal"], stream)
     for line in STATS:
         progress.follow(line)
     return progress, stream
@@ -64,3 +65,8 @@ def test_a_file_gets_a_line_a_tenth(followed):
 @pytest.mark.parametrize(("seconds", "text"), [(0, "0:00"), (59.6, "1:00"), (3600, "1:00:00")])
 def test_times(seconds, text):
     assert tell_time(seconds) == text
+
+
+def test_every_quality_has_its_shares():
+    assert set(SECONDS) == set(QUALITIES)
+    assert all(seconds > 0 for table in SECONDS.values() for each in table.values() for seconds in each)

@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 import sys
 import time
+from collections.abc import Mapping
 from typing import TextIO
 
-_SECONDS = {
+_NORMAL = {
     "frames": (6,),
     "features": (7,),
     "poses": (16,),
@@ -32,6 +33,13 @@ _SECONDS = {
     "evaluate_reconstruction": (2,),
 }
 """Seconds of a rule's first, second, ... job on a phone video with 24 keyframes, on two cores; shares alone count."""
+_DRAFT = {
+    **{"frames": (5,), "features": (5,), "poses": (14,), "shrink": (3,), "scout": (4,), "depth": (5, 6)},
+    **{"consistency": (3,), "fuse_scene": (3,), "locate": (5,), "crops": (6.5,), "cues": (4,), "fuse_object": (3,)},
+    **{"segment": (8,), "pixel_masks": (5,), "surface": (9,), "texture": (4,), "photographs": (3,), "evaluate": (2.5,)},
+}
+SECONDS = {"draft": {**_NORMAL, **_DRAFT}, "normal": _NORMAL, "fine": _NORMAL}
+"""The same by quality."""
 _OTHER = 5.0
 _EARLIEST = 0.04
 """Share of the work after which the time that is left is told."""
@@ -47,11 +55,14 @@ class Progress:
 
     Parameters
     ----------
+    seconds : mapping of str to tuple of float
+        Of each rule's jobs, as in `SECONDS`.
     stream : text stream
         Where progress is shown: one line, written over and over, on a terminal; else a line for each tenth.
     """
 
-    def __init__(self, stream: TextIO = sys.stderr) -> None:
+    def __init__(self, seconds: Mapping[str, tuple[float, ...]], stream: TextIO = sys.stderr) -> None:
+        self._seconds = seconds
         self._stream, self._live = stream, stream.isatty()
         self._begun, self._shown, self._told = time.monotonic(), 0.0, 0.0
         self._left: dict[str, list[float]] = {}
@@ -90,7 +101,7 @@ class Progress:
         if rule == "total":
             self._listing = False
         elif rule not in ("all", "collect"):
-            each = _SECONDS.get(rule, (_OTHER,))
+            each = self._seconds.get(rule, (_OTHER,))
             self._left[rule] = [float(each[min(rank * len(each) // count, len(each) - 1)]) for rank in range(count)]
             self._all += sum(self._left[rule])
 

@@ -15,7 +15,7 @@ from typing import Any
 import yaml
 
 from threedfs.cli.home import find_home
-from threedfs.cli.progress import Progress, tell_time
+from threedfs.cli.progress import SECONDS, Progress, tell_time
 from threedfs.cli.request import QUALITIES, Request, list_requests, make_configuration, read_height, read_settings
 from threedfs.errors import UserError
 from threedfs.report.findings import sum_up
@@ -116,7 +116,7 @@ def _reconstruct(
         *("--workflow-profile", str(home / "profiles/default")),
         *("--cores", str(cores), "--keep-going", "--configfile", *preset, str(asked)),
     ]
-    progress, said, stopped = Progress(), [], False
+    progress, said, stopped = Progress(SECONDS[quality]), [], False
     running = subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True
     )
