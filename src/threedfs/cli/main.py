@@ -29,6 +29,9 @@ _METHODS = {
 }
 
 
+_SCORED = ("masks", "mesh", "cameras")
+
+
 def main(words: Sequence[str] | None = None) -> int:
     """Do what the command line says; return the exit status."""
     arguments = _make_parser().parse_args(words)
@@ -68,6 +71,13 @@ def _make_parser() -> argparse.ArgumentParser:
     export.add_argument("--method", default="surface", help="whose mesh (surface)")
     export.set_defaults(act=_export)
 
+    score = actions.add_parser("score", help="score masks, a mesh or cameras of any program against a truth")
+    for what, form in (("masks", "folder of PNG"), ("mesh", "ply, obj, stl or glb"), ("cameras", "as the truth's")):
+        score.add_argument(f"--{what}", type=Path, help=f"what is scored: {form}")
+        score.add_argument(f"--true-{what}", type=Path, help="what it is scored against")
+    score.add_argument("--csv", type=Path, help="write the figures to this file as well")
+    score.set_defaults(act=_score)
+
     methods = actions.add_parser("methods", help="list the ways to a mesh or masks")
     methods.set_defaults(act=_list_methods)
     return parser
@@ -105,6 +115,34 @@ def _export(arguments: argparse.Namespace) -> int:
     size = read_height(arguments.height) / (1000 if arguments.file.suffix.lower() == ".glb" else 1)
     export(arguments.results, str(size), arguments.file, arguments.method)
     print(arguments.file)
+    return 0
+
+
+def _score(arguments: argparse.Namespace) -> int:
+    from threedfs.run_end.score import score_cameras, score_masks, score_mesh
+
+    given = {what: (getattr(arguments, what), getattr(arguments, f"true_{what}")) for what in _SCORED}
+    for what, (own, true) in given.items():
+        if (own is None) != (true is None):
+            raise UserError(f"score: expected --{what} and --true-{what} together, got one of them.")
+    figures = []
+    if given["masks"][0]:
+        figures += score_masks(*given["masks"])
+    if given["mesh"][0]:
+        figures += score_mesh(*given["mesh"], *given["cameras"])
+    if given["cameras"][0]:
+        figures += score_cameras(*given["cameras"])
+    if not figures:
+        raise UserError("score: expected --masks, --mesh or --cameras, each with its truth, got none of them.")
+    for figure in figures:
+        if not figure.keyframe:
+            print(f"{figure.name:28} {figure.value:.4g} {'' if figure.unit == '1' else figure.unit}".rstrip())
+    if arguments.csv:
+        from threedfs.evaluate.scores import Metric
+        from threedfs.io.metrics import write_metrics
+
+        rows = [Metric(figure.name, figure.value, figure.unit, "", "", "", figure.keyframe) for figure in figures]
+        write_metrics(arguments.csv, rows)
     return 0
 
 
