@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import os
+import re
 import signal
 import subprocess
 import sys
+import threading
 import time
 from argparse import Namespace
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -48,13 +51,17 @@ def run(arguments: Namespace) -> int:
     if status == _INTERRUPTED:
         print("threedfs: not finished; the same command goes on where it was stopped.", file=sys.stderr)
         return status
+    faults = [line for line in said if line.startswith("threedfs: ")]
+    failed = [request for request in requests if any(_is_of(request.name, line) for line in faults)]
     for request in requests:
-        _conclude(request, out, height)
+        # after a failure, meshes may be of an earlier run; a sequence that is not named has ended well
+        if not status or (failed and request not in failed):
+            _conclude(request, out, height)
     if not status:
         print(f"time     {tell_time(time.monotonic() - begun)}")
-    for sentence in dict.fromkeys(line for line in said if line.startswith("threedfs: ")):
+    for sentence in dict.fromkeys(faults):
         print(sentence, file=sys.stderr)
-    if status and not any(line.startswith("threedfs: ") for line in said):
+    if status and not faults:
         print(f"threedfs: the run failed; its last words are in {_log_of(out, requests)}.", file=sys.stderr)
     return 1 if status else 0
 
@@ -120,30 +127,51 @@ def _reconstruct(
     running = subprocess.Popen(
         command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace", start_new_session=True
     )
-    with open(log, "w", encoding="utf-8") as file:
-        while True:
-            try:
-                for line in running.stdout:
-                    file.write(line)
-                    file.flush()
-                    said.append(line.rstrip())
-                    progress.follow(line.rstrip())
-                break
-            except KeyboardInterrupt:
-                stopped = True
-                _stop(running)
+    with open(log, "w", encoding="utf-8") as file, _interrupted_by(signal.SIGTERM, signal.SIGHUP):
+        try:
+            for line in running.stdout:
+                file.write(line)
+                file.flush()
+                said.append(line.rstrip())
+                progress.follow(line.rstrip())
+        except KeyboardInterrupt:
+            stopped = True
+            _stop(running)
     status = running.wait()
     progress.show(last=True)
     return (_INTERRUPTED if stopped else status), said
 
 
+@contextmanager
+def _interrupted_by(*signals: signal.Signals) -> Iterator[None]:
+    """Let signals end a run as Ctrl-C does: it has a session of its own, and would outlive this process."""
+
+    def interrupt(number: int, frame: object) -> None:
+        raise KeyboardInterrupt
+
+    here = threading.current_thread() is threading.main_thread()  # signals can be handled there only
+    before = {each: signal.signal(each, interrupt) for each in signals} if here else {}
+    try:
+        yield
+    finally:
+        for each, handler in before.items():
+            signal.signal(each, handler)
+
+
 def _stop(running: subprocess.Popen) -> None:
     """Ask a run to end, and end it and its jobs if it does not."""
     running.send_signal(signal.SIGINT)
-    try:
-        running.wait(_PATIENCE)
-    except (subprocess.TimeoutExpired, KeyboardInterrupt):
-        os.killpg(running.pid, signal.SIGTERM)
+    for last in (signal.SIGTERM, signal.SIGKILL):
+        try:
+            running.communicate(timeout=_PATIENCE)
+            return
+        except (subprocess.TimeoutExpired, KeyboardInterrupt):
+            os.killpg(running.pid, last)
+
+
+def _is_of(name: str, sentence: str) -> bool:
+    """Say whether a sentence is of a job of a sequence: `threedfs: STAGE of NAME ITEM: ...`."""
+    return re.match(rf"threedfs: \w+ of {re.escape(name)}(?: [^:]*)?: ", sentence) is not None
 
 
 def _log_of(out: Path, requests: Sequence[Request]) -> Path:
