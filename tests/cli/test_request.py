@@ -29,9 +29,9 @@ def test_what_is_no_height_is_refused(text):
         ("mug.mp4", "mug"),
         ("VID_20260101.MOV", "VID_20260101"),
         ("Straße 5.mp4", "Stra_e_5"),
-        ("(((.mp4", "object"),
+        ("(((.mp4", "video_a1f7c81a"),
         ("<script>.mp4", "script"),
-        ("..mp4", "object"),
+        ("..mp4", "video_0ed4e242"),
     ],
 )
 def test_any_file_gets_a_name_that_can_be_a_folders(file, name):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import fcntl
 import signal
 import subprocess
 import sys
@@ -42,7 +43,7 @@ def test_a_video_of_any_name_is_reconstructed_in_another_folder(call, tmp_path):
     assert "My Video (1).mov is called My_Video_1" in output
     assert f"detail   {folder}/11_object/fused_sdf/mesh.ply" in output
     assert "%  0:" in output and "time     0:" in output
-    assert (folder / "run.txt").is_file() and not (tmp_path / "results").exists()
+    assert (tmp_path / "made/results/logs/run.txt").is_file() and not (tmp_path / "results").exists()
 
 
 @pytest.mark.parametrize(
@@ -57,6 +58,8 @@ def test_a_video_of_any_name_is_reconstructed_in_another_folder(call, tmp_path):
             "configuration, depth.iterations: expected integer, got 'many'",
         ),
         (["mug.mp4", "--set", "nothing=5"], "configuration: unknown key nothing"),
+        (["mug.mp4", "--set", "sequences=3"], "--set: expected a parameter, got sequences"),
+        (["mug.mp4", "--height", ""], "--height: expected a length"),
         (["mug.mp4", "--out", "mug.mp4"], "--out: expected a folder to write results to"),
     ],
 )
@@ -67,6 +70,40 @@ def test_what_cannot_be_is_refused_in_one_sentence(call, tmp_path, words, senten
     assert f"threedfs: {sentence}" in output
     assert "Traceback" not in output
     assert not list(tmp_path.glob("results/*/1*"))
+
+
+def test_another_file_of_the_same_name_is_refused(call, tmp_path):
+    for name in ("mug.mp4", "mug.mov"):
+        (tmp_path / name).write_text(name)
+    assert call("run", "mug.mp4", "--cores", "2")[0] == 0
+    status, output = call("run", "mug.mov")
+    assert status == 1 and f"holds the results of {tmp_path}/mug.mp4; rename the file, or use --out." in output
+
+
+def test_a_second_command_in_the_same_folder_waits_its_turn(call, tmp_path):
+    (tmp_path / "mug.mp4").write_text("film")
+    (tmp_path / "results/logs").mkdir(parents=True)
+    with open(tmp_path / "results/logs/run.lock", "w") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)
+        status, output = call("run", "mug.mp4")
+    assert status == 1 and "another run works in this folder" in output
+
+
+def test_of_two_videos_only_the_one_that_ended_well_is_announced(call, project, tmp_path):
+    for name in ("mug", "cup"):
+        (tmp_path / f"{name}.mp4").write_text(name)
+        (tmp_path / f"results/{name}/11_object/fused_sdf").mkdir(parents=True)
+    project.edit(
+        "src/threedfs/stages/frames.py",
+        "    write(",
+        "    from threedfs.errors import UserError\n"
+        f"    if source.stem == 'mug':\n        raise UserError({STATIC!r})\n    write(",
+    )
+    status, output = call("run", "mug.mp4", "cup.mp4")
+    assert status == 1
+    assert "cup/11_object/fused_sdf/mesh.ply" in output and "mug/11_object" not in output
+    assert f"threedfs: frames of mug: {STATIC}" in output
+    assert f"report   {tmp_path}/results/mug/report.html" in output
 
 
 def test_a_job_that_fails_ends_in_its_sentence(call, project, tmp_path):

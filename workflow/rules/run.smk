@@ -43,5 +43,5 @@ def finish(unfinished=()):
         },
         library_versions(REPORTED),
     )
-    report_run(run, lambda sentence: sys.stderr.write(f"threedfs: {sentence}\n"))
     sys.stderr.write(finish_run(run, [str(path) for path in unfinished]))
+    report_run(run, lambda sentence: sys.stderr.write(f"note: {sentence}\n"))

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import os
 import sys
 import webbrowser
 from collections.abc import Sequence
 from pathlib import Path
 
-from threedfs.cli.request import QUALITIES, read_height
+from threedfs.cli.request import INTERRUPTED, QUALITIES, count_cores, read_height
 from threedfs.errors import UserError
 
 _METHODS = {
@@ -40,8 +39,14 @@ def main(words: Sequence[str] | None = None) -> int:
     except UserError as fault:
         print(f"threedfs: {str(fault).removeprefix('threedfs: ')}", file=sys.stderr)
         return 1
-    except BrokenPipeError:  # the reader of our output, such as head, has gone
+    except OSError as fault:
+        if isinstance(fault, BrokenPipeError):  # the reader of our output, such as head, has gone
+            return 1
+        print(f"threedfs: {fault.filename or 'a file'}: {fault.strerror}.", file=sys.stderr)
         return 1
+    except KeyboardInterrupt:
+        print("threedfs: stopped.", file=sys.stderr)
+        return INTERRUPTED
 
 
 def _make_parser() -> argparse.ArgumentParser:
@@ -55,7 +60,7 @@ def _make_parser() -> argparse.ArgumentParser:
     run.add_argument("--out", default=".", help="folder that gets results/NAME and the files to print (here)")
     run.add_argument("--height", help="true height of the object, as 95mm: writes NAME.stl and NAME.glb to scale")
     run.add_argument("--quality", choices=QUALITIES, default="normal", help="draft is fast, fine is slow")
-    run.add_argument("--cores", type=_read_cores, default=os.cpu_count() or 1, help="cores to use (all)")
+    run.add_argument("--cores", type=_read_cores, default=count_cores(), help="cores to use (all)")
     run.add_argument("--set", action="append", metavar="STAGE.KEY=VALUE", help="change a parameter; can be repeated")
     run.set_defaults(act=_run)
 
@@ -104,6 +109,8 @@ def _show(arguments: argparse.Namespace) -> int:
 def _export(arguments: argparse.Namespace) -> int:
     from threedfs.run_end.export import export
 
+    if arguments.scene and arguments.height:
+        raise UserError("export: expected --scene or --height, got both; a scene is written in scene units.")
     if arguments.scene:
         from threedfs.run_end.export_scene import export_scene
 

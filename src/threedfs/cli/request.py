@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import math
+import os
 import re
+import zlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,7 +16,10 @@ import yaml
 from threedfs.errors import UserError
 from threedfs.params.sequences import RUN_FILES
 
+INTERRUPTED = 130
+"""Exit status after Ctrl-C, as of a shell."""
 QUALITIES = ("draft", "normal", "fine")
+_OWN = ("sequences", "video")
 _MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, "": 1.0}
 
 
@@ -56,14 +61,28 @@ def read_height(text: str) -> float:
 def name_sequence(source: Path) -> str:
     """Return a name for the results of a file, of letters, digits, dots, dashes and underscores.
 
+    A name with none of these becomes a digest of it, so that two such files are told apart.
+
     Examples
     --------
     >>> name_sequence(Path("My Video (1).mov"))
     'My_Video_1'
     """
-    stem = source.name if source.is_dir() else source.stem
+    stem = stem_of(source)
     name = re.sub(r"[^A-Za-z0-9.\-]+", "_", stem).strip("_.-")
-    return f"{name}_video" if name in RUN_FILES else name or "object"
+    if not name:
+        return f"video_{zlib.crc32(stem.encode()):08x}"
+    return f"{name}_video" if name in RUN_FILES else name
+
+
+def stem_of(source: Path) -> str:
+    """Return a file's name without its ending, or a folder's whole name."""
+    return source.name if source.is_dir() else source.stem
+
+
+def count_cores() -> int:
+    """Return how many cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def list_requests(sources: Sequence[str]) -> list[Request]:
@@ -106,6 +125,8 @@ def read_settings(changes: Sequence[str]) -> dict[str, Any]:
     for change in changes:
         key, equals, text = change.partition("=")
         parts = key.strip().split(".")
+        if parts[0] in _OWN:
+            raise UserError(f"--set: expected a parameter, got {parts[0]}; videos are given without --set.")
         if not equals or not all(parts) or len(parts) > 2:
             raise UserError(f"--set: expected STAGE.PARAMETER=VALUE, as in depth.iterations=5, got {change!r}.")
         try:

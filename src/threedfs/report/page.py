@@ -132,12 +132,12 @@ def _list_files(files: Mapping[str, str]) -> str:
 def _show_keyframes(keyframes: Sequence[KeyframePictures]) -> str:
     if not keyframes:
         return ""
-    kinds = list(keyframes[0].pictures)
+    kinds = list(dict.fromkeys(kind for each in keyframes for kind in each.pictures))
     show = "document.getElementById('keyframes').dataset.shown='{}'"
     buttons = "".join(f'<button type="button" onclick="{show.format(kind)}">{kind}</button>' for kind in kinds)
     figures = ""
     for each in keyframes:
-        pictures = "".join(_picture(kind, each) for kind in kinds)
+        pictures = "".join(_picture(kind, each) for kind in each.pictures)
         figures += f"<figure>{pictures}<figcaption>{html.escape(each.name)}</figcaption></figure>"
     style = "".join(f"#keyframes[data-shown={kind}] img.{kind}{{display:block}}" for kind in kinds)
     return _section(
@@ -148,8 +148,8 @@ def _show_keyframes(keyframes: Sequence[KeyframePictures]) -> str:
 
 
 def _picture(kind: str, keyframe: KeyframePictures) -> str:
-    source = keyframe.pictures.get(kind, "data:,")
-    return f'<img class="{kind}" loading="lazy" src="{source}" alt="{kind} of keyframe {html.escape(keyframe.name)}">'
+    what = f"{kind} of keyframe {html.escape(keyframe.name)}"
+    return f'<img class="{kind}" loading="lazy" src="{keyframe.pictures[kind]}" alt="{what}">'
 
 
 def _tell_left_out(left_out: Sequence[str]) -> str:

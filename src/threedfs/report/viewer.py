@@ -44,16 +44,21 @@ def embed_viewer(surface: TexturedMesh | Mesh, plane: Plane, views: list[View], 
         Address of an image that stands in where a browser has no WebGL.
     """
     scene = _lay_out(surface, plane, np.stack([view.centre for view in views]))
-    page = scene_to_html(scene).replace("scene.background=new THREE.Color(0xffffff)", _QUIET)
+    page = scene_to_html(scene)
+    if _LOUD not in page:
+        raise RuntimeError(f"trimesh {trimesh.__version__}: its viewer does not set {_LOUD}, which is replaced here.")
+    page = page.replace(_LOUD, _QUIET)
     buttons = "".join(f'<button type="button" onclick="{call}">{label}</button>' for label, call in _BUTTONS)
     return (
         f'<div class="viewer"><img id="still" src="{picture}" alt="the mesh">'
         f'<iframe id="turn" title="the mesh, to be turned" hidden></iframe></div>'
+        '<p id="flat" hidden>This browser cannot turn the mesh: it has no WebGL. Open mesh.glb in another viewer.</p>'
         f'<p class="buttons" id="buttons" hidden>{buttons} Drag to turn, scroll to come closer.</p>'
         f'<template id="viewer" data-page="{html.escape(page)}"></template><script>{_SCRIPT}</script>'
     )
 
 
+_LOUD = "scene.background=new THREE.Color(0xffffff)"
 _QUIET = "scene.background=new THREE.Color(0xf4f4f2);scene.add(new THREE.AmbientLight(0xffffff,0.4))"
 """In place of the viewer's white ground, so that light things stand out, and shadows are not black."""
 
@@ -98,9 +103,10 @@ _SCRIPT = """
 (function () {
   var frame = document.getElementById('turn'), still = document.getElementById('still');
   var probe = document.createElement('canvas');
-  if (!(probe.getContext('webgl2') || probe.getContext('webgl'))) { return; }
+  function give_up() { document.getElementById('flat').hidden = false; }
+  if (!(probe.getContext('webgl2') || probe.getContext('webgl'))) { give_up(); return; }
   frame.srcdoc = document.getElementById('viewer').dataset.page;
-  frame.addEventListener('load', function () { wait(100); });
+  frame.addEventListener('load', function () { wait(300); });
   function inside() { return frame.contentWindow; }
   function each(act) { inside().scene.traverse(act); }
   function isOf(thing, name) {
@@ -110,7 +116,7 @@ _SCRIPT = """
   function wait(tries) {
     var ready = false;
     if (inside().scene) { each(function (thing) { ready = ready || thing.isMesh; }); }
-    if (!ready) { if (tries) { setTimeout(function () { wait(tries - 1); }, 100); } return; }
+    if (!ready) { if (tries) { setTimeout(function () { wait(tries - 1); }, 100); } else { give_up(); } return; }
     look(); toggle('cameras'); toggle('plane');
     still.hidden = true; frame.hidden = false; document.getElementById('buttons').hidden = false;
     inside().dispatchEvent(new Event('resize'));

@@ -54,7 +54,7 @@ def export(sequence: Path, height: str, file: Path, method: str = "surface") -> 
     if not path.is_file():
         raise UserError(
             f"{path}: expected the mesh of a run, found none; correct {sequence}, run the sequence first, or "
-            "name a method that was run as METHOD."
+            "name a method that was run with --method."
         )
     plane, kind = read_support(sequence / "03_scene" / "support.json").plane, file.suffix.lower()
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -13,7 +14,7 @@ from threedfs.crops.resample import resample
 from threedfs.errors import UserError
 from threedfs.geometry.lens import Lens
 from threedfs.io.atomic import atomic
-from threedfs.io.frames import read_frames
+from threedfs.io.frames import FrameStore, read_frames
 from threedfs.io.images import write_mask, write_png
 from threedfs.io.meshes import read_mesh
 from threedfs.io.points import read_points
@@ -32,7 +33,8 @@ def export_scene(sequence: Path, folder: Path, method: str = "surface") -> int:
 
     `images/NAME.png` are the frames without distortion, `masks/NAME.png.png` the object in them (white), drawn from the
     mesh: COLMAP takes that folder as its `mask_path`. `sparse/0` is a COLMAP model in text with the sparse points,
-    `transforms.json` the same cameras for nerfstudio and its kin, with `mask_path`. All in scene units.
+    `transforms.json` the same cameras for nerfstudio and its kin, with `mask_path`. All in scene units. Files that are
+    in the way are replaced, others stay.
 
     Parameters
     ----------
@@ -57,20 +59,47 @@ def export_scene(sequence: Path, folder: Path, method: str = "surface") -> int:
         if not path.is_file():
             raise UserError(f"{path}: expected {what} of a run, found none; correct {sequence}, or run it first.")
     posed, mesh = read_poses(places["cameras"]), read_mesh(sequence / "11_object" / method / "mesh.ply")
-    _write_images(folder, posed.views, posed.distortion, read_frames(places["frames"]), mesh)
-    _write_model(folder / "sparse/0", posed.views, read_points(sequence / "02_poses/points.zarr.zip"))
-    _write_json(folder / "transforms.json", _describe_transforms(posed.views))
+    names = name_files([view.name for view in posed.views])
+    _write_images(folder, names, posed.views, posed.distortion, read_frames(places["frames"]), mesh)
+    _write_model(folder / "sparse/0", names, posed.views, read_points(sequence / "02_poses/points.zarr.zip"))
+    _write_json(folder / "transforms.json", _describe_transforms(names, posed.views))
     return len(posed.views)
 
 
-def _write_images(folder: Path, views: Sequence[View], distortion: tuple[float, float], frames, mesh: Mesh) -> None:
+def name_files(names: Sequence[str]) -> dict[str, str]:
+    """Return a file name for each frame: COLMAP's text format ends a name at a space.
+
+    Examples
+    --------
+    >>> name_files(["IMG 1 (2)", "IMG 1_(2)", "000120"])
+    {'IMG 1 (2)': 'IMG_1_2.png', 'IMG 1_(2)': 'IMG_1_2_1.png', '000120': '000120.png'}
+    """
+    files: dict[str, str] = {}
+    for name in names:
+        stem = re.sub(r"[^A-Za-z0-9.\-]+", "_", name).strip("_") or "frame"
+        file, number = f"{stem}.png", 0
+        while file in files.values():
+            number += 1
+            file = f"{stem}_{number}.png"
+        files[name] = file
+    return files
+
+
+def _write_images(
+    folder: Path,
+    names: Mapping[str, str],
+    views: Sequence[View],
+    distortion: tuple[float, float],
+    frames: FrameStore,
+    mesh: Mesh,
+) -> None:
     for view in views:
         image, valid = resample(frames.image(view.name), Lens(view.camera, *distortion), view.camera)
-        write_png(folder / "images" / f"{view.name}.png", image)
-        write_mask(folder / "masks" / f"{view.name}.png.png", draw_silhouette(mesh, view) & valid)
+        write_png(folder / "images" / names[view.name], image)
+        write_mask(folder / "masks" / f"{names[view.name]}.png", draw_silhouette(mesh, view) & valid)
 
 
-def _write_model(folder: Path, views: Sequence[View], points: SparsePoints) -> None:
+def _write_model(folder: Path, names: Mapping[str, str], views: Sequence[View], points: SparsePoints) -> None:
     """Write cameras.txt, images.txt and points3D.txt; observations of points are not kept, so tracks are empty."""
     numbers: dict[Camera, int] = {}
     for view in views:
@@ -83,7 +112,7 @@ def _write_model(folder: Path, views: Sequence[View], points: SparsePoints) -> N
     for number, view in enumerate(views, start=1):
         x, y, z, w = Rotation.from_matrix(view.cam_from_world[:3, :3]).as_quat(canonical=True)
         pose = " ".join(f"{value:.12g}" for value in (w, x, y, z, *view.cam_from_world[:3, 3]))
-        images += [f"{number} {pose} {numbers[view.camera]} {view.name}.png", ""]
+        images += [f"{number} {pose} {numbers[view.camera]} {names[view.name]}", ""]
     cloud = [
         f"{number} {x:.9g} {y:.9g} {z:.9g} {r} {g} {b} {error:.6g}"
         for number, ((x, y, z), (r, g, b), error) in enumerate(
@@ -95,14 +124,14 @@ def _write_model(folder: Path, views: Sequence[View], points: SparsePoints) -> N
             temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def _describe_transforms(views: Sequence[View]) -> dict:
+def _describe_transforms(names: Mapping[str, str], views: Sequence[View]) -> dict:
     frames = []
     for view in views:
         camera = view.camera
         frames.append(
             {
-                "file_path": f"images/{view.name}.png",
-                "mask_path": f"masks/{view.name}.png.png",
+                "file_path": f"images/{names[view.name]}",
+                "mask_path": f"masks/{names[view.name]}.png",
                 "transform_matrix": (np.linalg.inv(view.cam_from_world) @ _OPENGL).tolist(),
                 **{"w": camera.width, "h": camera.height, "fl_x": camera.fx, "fl_y": camera.fy},
                 **{"cx": camera.cx + _CORNER, "cy": camera.cy + _CORNER},

@@ -27,6 +27,9 @@ from threedfs.io.metrics import read_metrics, write_metrics
 from threedfs.params.schema import STAGES
 from threedfs.run_end.logs import find_failures, read_actions
 
+_WATCHED = ("02_poses/poses.json", "11_object/*/mesh.ply", "12_evaluate/**/*.csv", "**/logs/**/*.log")
+"""Files of a sequence that its report is older than, if it is out of date."""
+
 TABLES = {
     "iou": overlap_tables,
     "variants": variant_tables,
@@ -127,10 +130,14 @@ def report_run(run: Run, note: Callable[[str], object]) -> None:
     note : callable
         Takes a sentence for a report that could not be made.
     """
-    # pictures and meshes are read: what takes as long to import as a run with nothing to do
+    failures = find_failures(run.results, run.started)
+    failed = {failure.sequence for failure in failures}
+    due = [run.results / name for name in run.datasets if name in failed or _is_newer(run.results / name)]
+    if not due:
+        return
+    # what draws pictures takes a second to import, which a run with nothing to do is spared
     from threedfs.run_end.report import Context, write_reports
 
-    failures = find_failures(run.results, run.started)
     metrics = [metric for path in run.tables if path.is_file() for metric in read_metrics(path)]
 
     def describe(sequence: str) -> Context:
@@ -142,7 +149,14 @@ def report_run(run: Run, note: Callable[[str], object]) -> None:
             run.versions,
         )
 
-    write_reports([run.results / name for name in run.datasets], describe, note)
+    write_reports(due, describe, note)
+
+
+def _is_newer(folder: Path) -> bool:
+    """Say whether results of a sequence are newer than its report, or there are some and it has none."""
+    page = folder / "report.html"
+    made = max((path.stat().st_mtime for pattern in _WATCHED for path in folder.glob(pattern)), default=None)
+    return made is not None and (not page.is_file() or page.stat().st_mtime < made)
 
 
 def _lay_out(scores: Scores, makers: Mapping[str, Callable[[Scores, str], list[Table]]]) -> dict[str, str]:

@@ -27,12 +27,13 @@ def find_failures(results: Path, since: float) -> list[Failure]:
     for log in _find_logs(results):
         lines = _read_lines(log)
         if log.stat().st_mtime >= since and not (lines and lines[-1].startswith(_DONE)):
-            sequence, _, place = log.relative_to(results).with_suffix("").as_posix().partition("logs/")
+            folder, _, place = log.relative_to(results).with_suffix("").as_posix().partition("logs/")
+            sequence = folder.partition("/")[0]  # those of the scene pass lie a folder deeper
             rule, _, item = place.partition("/")
             refused = [line.removeprefix(_REFUSED) for line in lines if line.startswith(_REFUSED)]
-            failures += [_read_refusal(line, sequence.rstrip("/"), item) for line in refused]
+            failures += [_read_refusal(line, sequence, item) for line in refused]
             if not refused:
-                failures.append(Failure(sequence.rstrip("/"), rule, item, _explain(lines, log)))
+                failures.append(Failure(sequence, rule, item, _explain(lines, log)))
     return failures
 
 

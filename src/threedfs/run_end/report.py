@@ -35,11 +35,13 @@ _LONGEST, _STILL = 420, 900
 """Pixels along the longer side of a keyframe's pictures, and of the mesh's."""
 _AGREED = 0.5
 """Share of the photographs at a vertex that must agree on it."""
-_MESHES = ("surface", "sdf_2d3d_voxel", "fused_sdf")
+_PIXELS = ("gc_2d3d_pixel", "gc_2d")
+_MESHES = (
+    *("surface", "sdf_2d3d_voxel", "gc_select", "gc_2d3d_voxel", "volumetric_gc", "deformed_sdf", "fused_sdf"),
+    *("tsdf", "soft_maximum", "hard_maximum", "poisson"),
+)
 """Methods whose mesh is shown, the first that was run."""
-_WATCHED = ("12_evaluate/*.csv", "12_evaluate/*/*.csv", "11_object/*/mesh.ply", "02_poses/poses.json", "logs/*.log")
-"""Files that a report is older than, if it is out of date."""
-_MASKS = ("gc_2d3d_pixel", "surface", "sdf_2d3d_voxel", "fused_sdf")
+_MASKS = (*_PIXELS, *_MESHES)
 _FILES = {
     "the object with photographs on it, upright: open it in any viewer": "mesh.glb",
     "the object in full detail": "mesh.ply",
@@ -71,16 +73,20 @@ class Context:
 
 
 def write_report(folder: Path, context: Context) -> Path:
-    """Write report.html into the folder of a sequence's results; what is not there yet is left out."""
+    """Write report.html into the folder of a sequence's results; what is not there yet is left out.
+
+    After a failure mesh and masks are left out too: they may be of an earlier run.
+    """
     known = _gather(folder)
+    failed = bool(context.failures)
     report = Report(
         folder.name,
         failures=tuple(context.failures),
-        findings=tuple(find_out(folder)),
-        viewer=_show_mesh(folder, known),
+        findings=() if failed else tuple(find_out(folder)),
+        viewer="" if failed else _show_mesh(folder, known),
         path=draw_path(list(known.poses.views), known.keyframes, known.place) if known.place else "",
-        keyframes=tuple(_picture_keyframes(folder, known)),
-        files=_find_files(folder),
+        keyframes=tuple(_picture_keyframes(folder, known, with_masks=not failed)),
+        files={} if failed else _find_files(folder),
         left_out=known.poses.unposed if known.poses else (),
         scores=_tabulate(context.metrics),
         costs=tuple(_find_costs(folder, context.store)),
@@ -93,7 +99,7 @@ def write_report(folder: Path, context: Context) -> Path:
 
 
 def write_reports(folders: Sequence[Path], contexts: Callable[[str], Context], note: Callable[[str], object]) -> None:
-    """Write the report of each sequence whose results are newer than it, or one of whose jobs has failed.
+    """Write the reports of sequences; one that cannot be made ends no run, and has the failures alone.
 
     Parameters
     ----------
@@ -102,19 +108,17 @@ def write_reports(folders: Sequence[Path], contexts: Callable[[str], Context], n
     contexts : callable
         Gives what else is known of a sequence, by its name.
     note : callable
-        Takes a sentence for a report that could not be made: that ends no run.
+        Takes a sentence for a report that could not be made.
     """
     for folder in folders:
         context = contexts(folder.name)
-        page = folder / "report.html"
-        made = [path for pattern in _WATCHED for path in folder.glob(pattern)]
-        newest = max((path.stat().st_mtime for path in made), default=0.0)
-        if not made or (page.is_file() and page.stat().st_mtime >= newest and not context.failures):
-            continue
         try:
             write_report(folder, context)
         except Exception as fault:
             note(f"the report of {folder.name} was not made: {type(fault).__name__}: {fault}")
+            bare = Report(folder.name, failures=tuple(context.failures), settings=context.settings)
+            with atomic(folder / "report.html") as temporary:
+                temporary.write_text(write_page(bare), encoding="utf-8")
 
 
 def find_out(folder: Path) -> list[Finding]:
@@ -144,6 +148,12 @@ def find_out(folder: Path) -> list[Finding]:
 def find_method(folder: Path) -> str | None:
     """Return the method whose mesh of a sequence is the one to look at, None without any mesh."""
     return next((name for name in _MESHES if (folder / "11_object" / name / "mesh.ply").is_file()), None)
+
+
+def find_masks(folder: Path) -> Path | None:
+    """Return the folder of a sequence's masks to look at, None without any."""
+    folders = (folder / "11_object" / name / "masks" for name in _MASKS)
+    return next((path for path in folders if path.is_dir()), None)
 
 
 @dataclass(frozen=True)
@@ -190,13 +200,13 @@ def _show_mesh(folder: Path, known: _Known) -> str:
     return embed_viewer(surface, known.place.plane, views, embed_image(still, _STILL))
 
 
-def _picture_keyframes(folder: Path, known: _Known) -> Iterator[KeyframePictures]:
+def _picture_keyframes(folder: Path, known: _Known, with_masks: bool) -> Iterator[KeyframePictures]:
     crops = folder / "04_crops/crops.zarr.zip"
     if not crops.is_file():
         return
     store = read_crops(crops)
     drawn = (folder / "11_object" / method / "silhouettes.zarr.zip" for method in _MASKS)
-    masks = next((read_silhouettes(path) for path in drawn if path.is_file()), {})
+    masks = next((read_silhouettes(path) for path in drawn if with_masks and path.is_file()), {})
     for name, keyframe in known.keyframes.items():
         image, depth = store.image(name), folder / f"06_depth/{name}.zarr.zip"
         pictures = {"photograph": image}
@@ -212,12 +222,14 @@ def _picture_keyframes(folder: Path, known: _Known) -> Iterator[KeyframePictures
 def _find_files(folder: Path) -> dict[str, str]:
     files = {
         what: f"11_object/{method}/{name}"
-        for method in _MESHES[:1]
+        for method in [find_method(folder)]
+        if method
         for what, name in _FILES.items()
         if (folder / "11_object" / method / name).is_file()
     }
-    masks = next((m for m in _MASKS if (folder / "11_object" / m / "masks").is_dir()), None)
-    return files | ({"a mask of the object in every keyframe": f"11_object/{masks}/masks"} if masks else {})
+    masks = find_masks(folder)
+    named = {"a mask of the object in every keyframe": masks.relative_to(folder).as_posix()} if masks else {}
+    return files | named
 
 
 def _tabulate(metrics: Sequence[Metric]) -> dict[str, dict[str, str]]:
