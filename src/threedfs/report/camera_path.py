@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
@@ -13,7 +13,7 @@ _SIZE, _EDGE = 420.0, 24.0
 """Pixels of the drawing, and of the room around what it shows."""
 
 
-def draw_path(views: list[View], keyframes: Collection[str], place: Support) -> str:
+def draw_path(views: Sequence[View], keyframes: Collection[str], place: Support) -> str:
     """Return an SVG of all cameras from above the support plane: keyframes are larger, the object's box is in grey."""
     axes = axes_on(place.plane.normal)[:2]
     path = np.stack([view.centre for view in views]) @ axes.T
@@ -46,7 +46,7 @@ def _hull_order(points: np.ndarray) -> list[int]:
     return list(np.argsort(np.arctan2(away[:, 1], away[:, 0]), kind="stable"))
 
 
-def widest_gap(views: list[View], place: Support) -> float:
+def widest_gap(views: Sequence[View], place: Support) -> float:
     """Return the widest angle around the object, degrees, from which no camera looked at it."""
     axes = axes_on(place.plane.normal)[:2]
     away = np.stack([view.centre - place.box.centre for view in views]) @ axes.T

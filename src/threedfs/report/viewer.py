@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import io
+from collections.abc import Sequence
 
 import numpy as np
 import trimesh
@@ -29,7 +30,7 @@ _BUTTONS = (
 )
 
 
-def embed_viewer(surface: TexturedMesh | Mesh, plane: Plane, views: list[View], picture: str) -> str:
+def embed_viewer(surface: TexturedMesh | Mesh, plane: Plane, views: Sequence[View], picture: str) -> str:
     """Return a part of a page that shows the mesh, the camera's path and the support plane.
 
     Parameters
@@ -38,7 +39,7 @@ def embed_viewer(surface: TexturedMesh | Mesh, plane: Plane, views: list[View], 
         Scene units.
     plane : Plane
         What it stands on.
-    views : list of View
+    views : sequence of View
         The camera's path, in its order.
     picture : str
         Address of an image that stands in where a browser has no WebGL.

@@ -19,7 +19,8 @@ from threedfs.io.colored_meshes import read_colored_mesh, read_vertex_property
 from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_depth_map
 from threedfs.io.keyframes import read_keyframes
-from threedfs.io.poses import read_poses
+from threedfs.io.meshes import read_mesh
+from threedfs.io.poses import Poses, read_poses
 from threedfs.io.textured_meshes import read_textured_obj
 from threedfs.io.volumes import read_silhouettes, read_support
 from threedfs.report.camera_path import draw_path, widest_gap
@@ -29,7 +30,7 @@ from threedfs.report.pictures import color_depth, color_normals, embed_image, ou
 from threedfs.report.viewer import embed_viewer
 from threedfs.run_end.logs import read_actions
 from threedfs.texture.photograph import photograph_texture, photograph_vertices
-from threedfs.types import Keyframe
+from threedfs.types import Keyframe, Support
 
 _LONGEST, _STILL = 420, 900
 """Pixels along the longer side of a keyframe's pictures, and of the mesh's."""
@@ -82,9 +83,9 @@ def write_report(folder: Path, context: Context) -> Path:
     report = Report(
         folder.name,
         failures=tuple(context.failures),
-        findings=() if failed else tuple(find_out(folder)),
+        findings=() if failed else tuple(_judge(folder, known)),
         viewer="" if failed else _show_mesh(folder, known),
-        path=draw_path(list(known.poses.views), known.keyframes, known.place) if known.place else "",
+        path=draw_path(known.poses.views, known.keyframes, known.place) if known.place else "",
         keyframes=tuple(_picture_keyframes(folder, known, with_masks=not failed)),
         files={} if failed else _find_files(folder),
         left_out=known.poses.unposed if known.poses else (),
@@ -123,19 +124,21 @@ def write_reports(folders: Sequence[Path], contexts: Callable[[str], Context], n
 
 def find_out(folder: Path) -> list[Finding]:
     """Return what is to be known of a sequence's results before trusting them; nothing without a mesh."""
-    known = _gather(folder)
+    return _judge(folder, _gather(folder))
+
+
+def _judge(folder: Path, known: _Known) -> list[Finding]:
     if known.place is None or known.method is None:
         return []
     path = folder / "11_object" / known.method / "mesh.ply"
-    mesh, _ = read_colored_mesh(path)
-    sound = {figure.name: figure.value for figure in soundness_figures(mesh)}
+    sound = {figure.name: figure.value for figure in soundness_figures(read_mesh(path))}
     agreed = read_vertex_property(path, "confirmed")
     return judge(
         Facts(
             posed=len(known.poses.views),
             frames=len(known.poses.views) + len(known.poses.unposed),
             quality=known.poses.quality,
-            widest_gap=widest_gap(list(known.poses.views), known.place),
+            widest_gap=widest_gap(known.poses.views, known.place),
             margin_used=known.place.figures.get("margin_used"),
             closed=bool(sound["mesh_closed"]),
             pieces=int(sound["mesh_pieces"]),
@@ -160,8 +163,8 @@ def find_masks(folder: Path) -> Path | None:
 class _Known:
     """What lies in a folder of results, None where the run did not come so far."""
 
-    poses: object = None
-    place: object = None
+    poses: Poses | None = None
+    place: Support | None = None
     keyframes: Mapping[str, Keyframe] = field(default_factory=dict)
     method: str | None = None
 
@@ -194,10 +197,9 @@ def _show_mesh(folder: Path, known: _Known) -> str:
         surface, colors = read_colored_mesh(own / "mesh.ply")
         plain = np.full((len(surface.vertices), 3), 180.0)
         photographer = photograph_vertices(surface, plain if colors is None else colors.astype(np.float64))
-    views = list(known.poses.views)
     image, shown = photographer.take(next(iter(known.keyframes.values())).view)
     still = np.where(shown[..., None], image.clip(0, 255), 244).astype(np.uint8)
-    return embed_viewer(surface, known.place.plane, views, embed_image(still, _STILL))
+    return embed_viewer(surface, known.place.plane, known.poses.views, embed_image(still, _STILL))
 
 
 def _picture_keyframes(folder: Path, known: _Known, with_masks: bool) -> Iterator[KeyframePictures]:
@@ -220,16 +222,12 @@ def _picture_keyframes(folder: Path, known: _Known, with_masks: bool) -> Iterato
 
 
 def _find_files(folder: Path) -> dict[str, str]:
-    files = {
-        what: f"11_object/{method}/{name}"
-        for method in [find_method(folder)]
-        if method
-        for what, name in _FILES.items()
-        if (folder / "11_object" / method / name).is_file()
-    }
-    masks = find_masks(folder)
-    named = {"a mask of the object in every keyframe": masks.relative_to(folder).as_posix()} if masks else {}
-    return files | named
+    """Return what the run made, what it is by its place below the folder."""
+    method, masks = find_method(folder), find_masks(folder)
+    places = {what: folder / "11_object" / method / name for what, name in _FILES.items()} if method else {}
+    if masks:
+        places["a mask of the object in every keyframe"] = masks
+    return {what: path.relative_to(folder).as_posix() for what, path in places.items() if path.exists()}
 
 
 def _tabulate(metrics: Sequence[Metric]) -> dict[str, dict[str, str]]:
