@@ -72,7 +72,7 @@ def test_kernels_are_used_again_by_the_same_code(toolbox, tmp_path, spawn):
     def compiled_after(content: str) -> dict[str, int]:
         (tmp_path / "a").write_text(content)  # other input: the stage runs again
         assert spawn(PROGRAM.format(folder=str(tmp_path))).communicate()[0].strip() == "3"
-        kernels = sorted((tmp_path / "store" / "kernels").rglob("*.nbc"))
+        kernels = sorted((tmp_path / "store" / "kernels").rglob("*.kernel"))
         return {path.name: path.stat().st_mtime_ns for path in kernels}
 
     first = compiled_after("one")

@@ -14,6 +14,8 @@ run_keyframes(
     dict(snakemake.wildcards.items()),
     snakemake.params.get("labels", {}),
     store=Path(snakemake.config["store"]),
+    fallback=Path(snakemake.config["store_fallback"]) if snakemake.config["store_fallback"] else None,
+    made=Path("results/.made"),
     log=Path(snakemake.log[0]),
     threads=snakemake.threads,
     seed=snakemake.params.seed,

@@ -93,6 +93,7 @@ def configuration_schema() -> dict[str, Any]:
         },
         "seed": {"type": "integer", "minimum": 0},
         "store": {"type": "string", "minLength": 1},
+        "store_fallback": _PATH,
     }
     stages = {stage: stage_schema(declared) for stage, declared in declared_stages().items()}
     return {

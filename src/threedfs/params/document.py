@@ -54,6 +54,9 @@ seed: 0
 
 # Finished work, shared by all sequences; may be outside of results/, and shared by several checkouts.
 store: results/.store
+
+# Another store, which is only read: what it has is copied from there instead of made.
+store_fallback: null
 """
 
 _INTRODUCTION = """\
@@ -68,8 +71,8 @@ the paper, `presets/quick.yaml` makes everything small; files can be given toget
 `--configfile my.yaml config/presets/paper.yaml`. Sections are merged key by key, so a second file adds its sequences
 to those of the first; lists and single values are replaced. `benchmark.yaml` is the whole benchmark.
 One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`. What is one word in `config.yaml` can be
-given so (`video`, `dataset`, `seed`, `store`, `'methods=[fused_sdf, tsdf]'`); the parameters of stages can not: write
-`depth: {iterations: 5}` into my.yaml.
+given so (`video`, `dataset`, `seed`, `store`, `store_fallback`, `'methods=[fused_sdf, tsdf]'`); the parameters of
+stages can not: write `depth: {iterations: 5}` into my.yaml.
 `datasets/` has files of sequences: the data sets that the project is measured on, and the layouts of published ones.
 
 An unknown key, a wrong type or a value out of range stops the run before it starts, with a sentence.
@@ -141,6 +144,8 @@ _KEYS = {
     "changes. `ablation.yaml` has one for every term and option",
     "seed": "of every random choice",
     "store": "folder of finished work, and of the kernels compiled for it",
+    "store_fallback": "another store, which is only read: finished work is copied from there before it is done "
+    "([sharing](../docs/store.md))",
 }
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from pathlib import Path
 
 from threedfs.evaluate.scores import Failure
+from threedfs.store.records import BadRecord, is_digest, read_record
 
 _DONE = "action "
 _REFUSED = "threedfs: "
@@ -41,8 +41,22 @@ def read_actions(folder: Path, store: Path) -> list[dict]:
     """Read the records of the actions that the jobs of a sequence did, which their logs name."""
     lines = (line for log in _find_logs(folder) for line in _read_lines(log))
     keys = sorted(line.removeprefix(_DONE) for line in lines if line.startswith(_DONE))
-    records = (store / "actions" / key[:2] / f"{key}.json" for key in keys)
-    return [json.loads(record.read_text()) for record in records if record.is_file()]
+    records = (_read_record(store, key) for key in keys)
+    return [record for record in records if record is not None]
+
+
+def read_keys(folder: Path) -> set[str]:
+    """Return the keys of the actions that the jobs of a sequence did, which their logs name."""
+    lines = (line for log in _find_logs(folder) for line in _read_lines(log))
+    return {key for line in lines if line.startswith(_DONE) and is_digest(key := line.removeprefix(_DONE))}
+
+
+def _read_record(store: Path, key: str) -> dict | None:
+    """Read a record; one that is damaged tells no costs."""
+    try:
+        return read_record(store, key) if is_digest(key) else None
+    except BadRecord:
+        return None
 
 
 def _read_refusal(line: str, sequence: str, item: str) -> Failure:

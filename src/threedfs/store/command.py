@@ -16,7 +16,7 @@ from threedfs.progress import Progress
 from threedfs.store.action import Inputs, Task
 from threedfs.store.arguments import fit_inputs, read_arguments, read_order
 from threedfs.store.each import Chain, Fault, Passage, perform_each
-from threedfs.store.perform import perform
+from threedfs.store.perform import Store, explained, perform
 
 
 class Tee:
@@ -55,6 +55,8 @@ def run_job(
     refusal: str = "",
     modules: Sequence[str] = (),
     package: str = "threedfs",
+    fallback: Path | None = None,
+    made: Path | None = None,
 ) -> None:
     """Perform one job and exit with status 1 if it fails.
 
@@ -74,6 +76,8 @@ def run_job(
     threads : int
     refusal : str
         Why the job cannot be done, if that is known before.
+    fallback, made : Path or None
+        As a `Store` has them.
     """
     started = time.monotonic()
     identity = {name: value for name, value in wildcards.items() if name != "sequence"}
@@ -86,7 +90,7 @@ def run_job(
         fitting = fit_inputs(arguments, inputs, order=order)
         task = Task(stage, fitting, outputs, settings, {**identity, **labels}, seed, modules, package)
         progress = Progress(label, streams)
-        outcome = perform(task, store, progress=progress, threads=threads)
+        outcome = perform(task, store, progress=progress, threads=threads, fallback=fallback, made=made)
         how = "taken from the store" if outcome.hit else "done"
         progress.note(f"{how} in {time.monotonic() - started:.1f} s")
         _name_actions([outcome.key], file)
@@ -107,6 +111,8 @@ def run_keyframes(
     seed: int,
     keyframes: Sequence[str] | None = None,
     package: str = "threedfs",
+    fallback: Path | None = None,
+    made: Path | None = None,
 ) -> None:
     """Perform a chain of stages for every keyframe and exit with status 1 if any of it fails.
 
@@ -125,18 +131,21 @@ def run_keyframes(
         Keyframes worked on at once.
     keyframes : sequence of str or None
         Those to work on, if not all.
+    fallback, made : Path or None
+        As a `Store` has them.
     """
     sequence = _name_sequence(wildcards)
     with _logged(log, f"{rule} of {sequence}") as (file, streams):
         order = read_order(inputs["keyframes"])
-        found = perform_each(
-            Chain(tuple(stages), inputs, outputs, settings, labels, seed, package),
-            order if keyframes is None else keyframes,
-            order,
-            store,
-            announce=lambda stage, keyframe: Progress(f"{stage or rule} of {sequence} {keyframe}", streams),
-            threads=threads,
-        )
+        with explained(store):
+            found = perform_each(
+                Chain(tuple(stages), inputs, outputs, settings, labels, seed, package),
+                order if keyframes is None else keyframes,
+                order,
+                Store(store, fallback, made),
+                announce=lambda stage, keyframe: Progress(f"{stage or rule} of {sequence} {keyframe}", streams),
+                threads=threads,
+            )
         _name_actions([outcome.key for passage in found.values() for outcome in passage.outcomes], file)
         faults = _gather_faults(found)
         for fault, names in faults.items():

@@ -8,7 +8,7 @@ import os
 from collections.abc import Mapping
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 from threedfs.errors import UserError
 from threedfs.io.schema import KEYFRAMES
@@ -25,6 +25,20 @@ def digest_value(value: Any) -> str:
     return hashlib.sha256(canonical_json(value)).hexdigest()
 
 
+class Guard(Protocol):
+    """What knows the bytes that results of jobs had when they were put in their places."""
+
+    def settle(self, path: Path, digest: str) -> str:
+        """Return the digest of a file as its job wrote it, having put that back if another one was found."""
+
+    def fill(self, path: Path) -> None:
+        """Put back a result, or files of a folder of results, that are missing."""
+
+
+_CONFIRMED: dict[str, list[int]] = {}
+"""Stamps of the files that this process, or the one it was forked from, has hashed or written itself."""
+
+
 class InputDigests:
     """Digests of input files, remembered by path, size, modification time and inode.
 
@@ -32,30 +46,41 @@ class InputDigests:
     ----------
     folder : Path
         Where they are remembered.
+    guard : Guard or None
+        Is asked about every file that is hashed.
+    thorough : bool
+        Hash every file once in this process, whatever is remembered.
     """
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, guard: Guard | None = None, thorough: bool = False) -> None:
         self.folder = folder
+        self.guard = guard
+        self.thorough = thorough
 
     def file(self, path: Path) -> str:
         """Return the SHA-256 of a file's content."""
         stamp = _stamp(path)
-        note = self._note(path)
-        try:
-            remembered = json.loads(note.read_text())
-            if remembered["stamp"] == stamp:
-                return remembered["sha256"]
-        except (OSError, ValueError, KeyError, TypeError):
-            pass
+        if not self.thorough or _CONFIRMED.get(os.path.abspath(path)) == stamp:
+            remembered = self._remembered(path, stamp)
+            if remembered is not None:
+                return remembered
         digest = _hash_file(path)
+        if self.guard is not None:
+            settled = self.guard.settle(path, digest)
+            if settled != digest:  # it was put back, and remembered
+                return settled
         if _stamp(path) == stamp:  # else it was written to meanwhile
             self.remember(path, digest)
         return digest
 
     def remember(self, path: Path, digest: str) -> None:
-        """Note the digest of a file that was just written whole."""
-        content = {"path": os.path.abspath(path), "sha256": digest, "stamp": _stamp(path)}
-        write_atomically(self._note(path), canonical_json(content))
+        """Note the digest of a file that was just written or read whole; where notes cannot be written, do not."""
+        stamp = _stamp(path)
+        _CONFIRMED[os.path.abspath(path)] = stamp
+        try:
+            write_atomically(self._note(path), _render_note(path, digest, stamp))
+        except OSError:  # the store is full or only read: the file is hashed again next time
+            pass
 
     def folder_of_files(self, path: Path) -> str:
         """Digest a folder: the relative names and contents of its files, without hidden ones."""
@@ -73,6 +98,8 @@ class InputDigests:
         UserError
             If there is neither.
         """
+        if self.guard is not None and (path.is_dir() or not path.exists()):
+            self.guard.fill(path)
         if path.is_dir():
             return self.folder_of_files(path)
         if path.is_file():
@@ -101,6 +128,7 @@ class InputDigests:
         if isinstance(value, list):
             return [[path.name, self.any(path)] for path in value]
         if keyframe is not None and value.suffix == ".json" and value.is_file():
+            self.file(value)  # it is put right before it is read
             entries = _read_keyframes(value, *_stamp(value))
             if entries is not None:
                 return digest_value(entries.get(keyframe))
@@ -109,6 +137,21 @@ class InputDigests:
     def _note(self, path: Path) -> Path:
         name = hashlib.sha256(os.path.abspath(path).encode()).hexdigest()
         return self.folder / name[:2] / f"{name}.json"
+
+    def _remembered(self, path: Path, stamp: list[int]) -> str | None:
+        """Return what is noted of a file if it has not changed since, and the note is whole."""
+        try:
+            data = self._note(path).read_bytes()
+            digest = json.loads(data)["sha256"]
+            whole = data == _render_note(path, digest, stamp)
+        except (OSError, ValueError, KeyError, TypeError, RecursionError):
+            return None
+        return digest if whole else None
+
+
+def _render_note(path: Path, digest: str, stamp: list[int]) -> bytes:
+    note = {"path": os.path.abspath(path), "sha256": digest, "stamp": stamp}
+    return canonical_json({**note, "check": digest_value(note)})
 
 
 @lru_cache(maxsize=8)

@@ -15,11 +15,12 @@ from typing import Any
 from threedfs.errors import UserError
 from threedfs.job import Job
 from threedfs.progress import Progress
-from threedfs.store.action import Inputs, Task, identify, identify_maker
+from threedfs.store.action import Action, Inputs, Task, identify, identify_maker
 from threedfs.store.arguments import SUFFIX, fit_inputs, read_arguments
-from threedfs.store.digests import InputDigests
 from threedfs.store.files import remove
-from threedfs.store.perform import Outcome, fetch, load_stages, make
+from threedfs.store.heartbeat import beating
+from threedfs.store.made import Made
+from threedfs.store.perform import Outcome, Store, explained, fetch, load_stages, make, obtain
 from threedfs.store.workers import Death, share_out
 
 Announce = Callable[[str, str], Progress]
@@ -111,7 +112,7 @@ class Passage:
 
 
 def perform_each(
-    chain: Chain, keyframes: Sequence[str], order: Sequence[str], store: Path, *, announce: Announce, threads: int
+    chain: Chain, keyframes: Sequence[str], order: Sequence[str], store: Store, *, announce: Announce, threads: int
 ) -> dict[str, Passage]:
     """Put the outputs of a chain in place for all keyframes, from the store or by running the stages.
 
@@ -127,7 +128,7 @@ def perform_each(
         Those to work on.
     order : sequence of str
         All keyframes, in the order in which stages that read several are given them.
-    store : Path
+    store : Store
     announce : callable
     threads : int
 
@@ -138,6 +139,8 @@ def perform_each(
     """
     for folder in chain.outputs.values():
         _clear(folder, {f"{keyframe}{SUFFIX}" for keyframe in keyframes})
+        if store.made is not None:
+            Made(store.made).forget(folder)  # its files are noted one by one
     found: dict[str, Passage] = {}
 
     def tell(keyframe: str, how: str, seconds: float) -> None:
@@ -152,50 +155,74 @@ def perform_each(
             tell(keyframe, "taken from the store", time.monotonic() - started)
         else:
             reached[keyframe] = outcomes
-    if reached:
+    if not reached:
+        return found
+    with beating(store.claims) as beat:
         first = min(map(len, reached.values()))
         modules = [f"{chain.package}.stages.{stage}" for stage in chain.stages[first:]]
-        load_stages({module: identify_maker(module) for module in modules}, store, 1)
+        reason = load_stages({module: identify_maker(module) for module in modules}, store.folder, 1)
+        if reason:
+            announce("", next(iter(reached))).note(reason)
+        _confirm_inputs(chain, next(iter(reached)), order, reached, store, announce)
 
-    def work(keyframe: str) -> tuple[Passage, float]:
-        started = time.monotonic()
-        tasks = chain.tasks(keyframe, order)[len(reached[keyframe]) :]
-        rest = _pass_through(tasks, store, lambda stage: announce(stage, keyframe))
-        return Passage((*reached[keyframe], *rest.outcomes), rest.fault), time.monotonic() - started
+        def work(keyframe: str) -> tuple[Passage, float]:
+            started = time.monotonic()
+            tasks = chain.tasks(keyframe, order)[len(reached[keyframe]) :]
+            rest = _pass_through(tasks, store, beat, lambda stage: announce(stage, keyframe))
+            return Passage((*reached[keyframe], *rest.outcomes), rest.fault), time.monotonic() - started
 
-    for keyframe, answer in share_out(work, list(reached), threads):
-        if isinstance(answer, Death):
-            found[keyframe] = Passage(reached[keyframe], Fault("", str(answer)))
-            continue
-        found[keyframe], seconds = answer
-        tell(keyframe, "not done, stopped" if found[keyframe].fault else "done", seconds)
-        if found[keyframe].fault and found[keyframe].fault.trace:
-            break
+        for keyframe, answer in share_out(work, list(reached), threads):
+            if isinstance(answer, Death):
+                found[keyframe] = Passage(reached[keyframe], Fault("", str(answer)))
+                continue
+            found[keyframe], seconds = answer
+            tell(keyframe, "not done, stopped" if found[keyframe].fault else "done", seconds)
+            if found[keyframe].fault and found[keyframe].fault.trace:
+                break
     return {keyframe: found[keyframe] for keyframe in keyframes if keyframe in found}
 
 
-def _fetch_first(tasks: Sequence[Task], store: Path, announce: Callable[[str], Progress]) -> tuple[Outcome, ...]:
+def _fetch_first(tasks: Sequence[Task], store: Store, announce: Callable[[str], Progress]) -> tuple[Outcome, ...]:
     """Take from the store what the first stages made, up to the first that it has not."""
-    digests = InputDigests(store / "digests")
     outcomes = []
     for task in tasks:
-        outcome = fetch(identify(task, digests), store, announce(task.stage))
+        progress = announce(task.stage)
+        outcome = fetch(identify(task, store.digests(progress)), store, progress)
         if outcome is None:
             break
         outcomes.append(outcome)
     return tuple(outcomes)
 
 
-def _pass_through(tasks: Sequence[Task], store: Path, announce: Callable[[str], Progress]) -> Passage:
+def _confirm_inputs(
+    chain: Chain,
+    keyframe: str,
+    order: Sequence[str],
+    reached: Mapping[str, tuple[Outcome, ...]],
+    store: Store,
+    announce: Announce,
+) -> None:
+    """Look at the bytes of what all keyframes' work reads, once for all workers."""
+    task = chain.tasks(keyframe, order)[len(reached[keyframe])]
+    try:
+        identify(task, store.digests(announce(task.stage, keyframe), thorough=True))
+    except UserError:  # the worker says so
+        pass
+
+
+def _pass_through(tasks: Sequence[Task], store: Store, beat: Path, announce: Callable[[str], Progress]) -> Passage:
     """Do stages that are loaded, one after the other, up to the first that fails."""
     outcomes = []
     for task in tasks:
         started, progress = time.monotonic(), announce(task.stage)
+
+        def work(action: Action, progress: Progress = progress, started: float = started) -> Outcome:
+            return make(action, store, Job(progress, action.header, 1, action.task.seed), started)
+
         try:
-            action = identify(task, InputDigests(store / "digests"))
-            outcome = fetch(action, store, progress)
-            if outcome is None:
-                outcome = make(action, store, Job(progress, action.header, 1, task.seed), started)
+            with explained(store.folder):
+                action = identify(task, store.digests(progress))
+                outcome = fetch(action, store, progress) or obtain(action, store, beat, progress, work)
         except UserError as fault:
             return Passage(tuple(outcomes), Fault(task.stage, str(fault)))
         except Exception:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import shutil
 import socket
+import stat
 from pathlib import Path
+from typing import BinaryIO
 
 _SUFFIX = ".part"
 
@@ -19,6 +22,7 @@ def write_atomically(path: Path, data: bytes) -> None:
     """Write a small file: to a temporary name, flushed, then renamed."""
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = temporary_name(path)
+    remove(temporary)  # of a killed process with our number
     try:
         with open(temporary, "wb") as file:
             file.write(data)
@@ -27,6 +31,36 @@ def write_atomically(path: Path, data: bytes) -> None:
         os.replace(temporary, path)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def open_regular(path: Path) -> BinaryIO:
+    """Open a file to read if it is one: never through a link, and never waiting on a pipe.
+
+    Raises
+    ------
+    OSError
+        If there is something else, or nothing.
+    """
+    descriptor = os.open(path, os.O_RDONLY | os.O_NOFOLLOW | os.O_NONBLOCK | os.O_CLOEXEC)
+    if not stat.S_ISREG(os.fstat(descriptor).st_mode):
+        os.close(descriptor)
+        raise OSError(errno.EINVAL, "expected a file, found a folder, a pipe or a device", str(path))
+    return open(descriptor, "rb")
+
+
+def read_regular(path: Path) -> bytes:
+    """Return the bytes of a file, as `open_regular` opens it."""
+    with open_regular(path) as file:
+        return file.read()
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder; what is none and lies in its place is removed."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        remove(folder)
+        folder.mkdir(parents=True, exist_ok=True)
 
 
 def flush_folder(folder: Path) -> None:
@@ -57,11 +91,12 @@ def remove_abandoned(folder: Path, pattern: str = "*") -> None:
     """
     for path in folder.glob(f".{pattern}.{socket.gethostname()}.*{_SUFFIX}"):
         process = path.name.removesuffix(_SUFFIX).rpartition(".")[2]
-        if process.isdigit() and not _is_running(int(process)):
+        if process.isdigit() and not is_running(int(process)):
             remove(path)
 
 
-def _is_running(process: int) -> bool:
+def is_running(process: int) -> bool:
+    """Say whether a process of this machine lives."""
     if _is_zombie(process):
         return False
     try:

@@ -2,23 +2,75 @@
 
 from __future__ import annotations
 
+import errno
 import importlib
-import json
 import os
 import resource
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from threedfs.errors import UserError
 from threedfs.job import Job
 from threedfs.progress import Progress
 from threedfs.store.action import Action, Task, identify
+from threedfs.store.claims import claim
 from threedfs.store.digests import InputDigests, digest_value
-from threedfs.store.files import remove, remove_abandoned, temporary_name, write_atomically
-from threedfs.store.objects import Content, DamagedObject, Objects
+from threedfs.store.files import remove, remove_abandoned, temporary_name
+from threedfs.store.heartbeat import beating
+from threedfs.store.kernels import choose_folder
+from threedfs.store.made import Made, ResultGuard
+from threedfs.store.objects import DamagedObject, Objects
+from threedfs.store.records import IDENTITY, MADE, BadRecord, Content, digests_of, read_record, write_record
+
+_FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
+_FORBIDDEN = (errno.EACCES, errno.EPERM)
+
+
+@dataclass(frozen=True)
+class Store:
+    """Where finished work is kept.
+
+    Attributes
+    ----------
+    folder : Path
+    fallback : Path or None
+        Another store, which is only read: what this one has not is copied from there.
+    made : Path or None
+        Folder of notes of what was put into results; without it they are taken as they are.
+    """
+
+    folder: Path
+    fallback: Path | None = None
+    made: Path | None = None
+
+    def digests(self, progress: Progress, thorough: bool = False) -> InputDigests:
+        """Return the digests of inputs, which puts damaged results back.
+
+        Parameters
+        ----------
+        progress : Progress
+        thorough : bool
+            Look at the bytes of files that have not been touched, too.
+        """
+        guard = None
+        if self.made is not None:
+            guard = ResultGuard(Made(self.made), self.objects, progress.note)
+        return InputDigests(self.folder / "digests", guard, thorough)
+
+    @property
+    def objects(self) -> Objects:
+        """What outputs are kept as."""
+        fallback = self.fallback / "objects" if self.fallback else None
+        return Objects(self.folder / "objects", InputDigests(self.folder / "digests"), fallback)
+
+    @property
+    def claims(self) -> Path:
+        """Where jobs tell what they are doing."""
+        return self.folder / "claims"
 
 
 @dataclass(frozen=True)
@@ -37,7 +89,15 @@ class Outcome:
     hit: bool
 
 
-def perform(task: Task, store: Path, *, progress: Progress, threads: int = 1) -> Outcome:
+def perform(
+    task: Task,
+    store: Path,
+    *,
+    progress: Progress,
+    threads: int = 1,
+    fallback: Path | None = None,
+    made: Path | None = None,
+) -> Outcome:
     """Put a stage's outputs in place, from the store or by running the stage.
 
     The stage's module (and with it the numeric libraries) is imported only when the store has no such action.
@@ -49,60 +109,106 @@ def perform(task: Task, store: Path, *, progress: Progress, threads: int = 1) ->
     progress : Progress
         Takes the stage's notes.
     threads : int
+    fallback, made : Path or None
+        As a `Store` has them.
 
     Raises
     ------
     UserError
-        If an input is missing, or the stage refuses what it was given.
+        If an input is missing, the stage refuses what it was given, or the store cannot be written to.
     """
-    started = time.monotonic()
-    action = identify(task, InputDigests(store / "digests"))
-    found = fetch(action, store, progress)
-    if found is None:
-        load_stages({task.module: action.maker}, store, threads)
-        found = make(action, store, Job(progress, action.header, threads, task.seed), started)
-    return found
+    started, place = time.monotonic(), Store(store, fallback, made)
+    with explained(store):
+        action = identify(task, place.digests(progress))
+        found = fetch(action, place, progress)
+        if found is not None:
+            return found
+        with beating(place.claims) as beat:
+
+            def work(action: Action) -> Outcome:
+                reason = load_stages({task.module: action.maker}, store, threads)
+                if reason:
+                    progress.note(reason)
+                return make(action, place, Job(progress, action.header, threads, task.seed), started)
+
+            return obtain(action, place, beat, progress, work)
 
 
-def fetch(action: Action, store: Path, progress: Progress) -> Outcome | None:
-    """Put the outputs of an action in place if the store has them; else return None."""
-    known = _read_outputs(_record(store, action.key))
-    if known is None or known.keys() != action.task.outputs.keys():
-        return None
-    try:
-        _check_out(_objects(store), known, action.task.outputs)
-    except DamagedObject as fault:
-        progress.note(f"{fault}, so the work is done again")
-        return None
-    return Outcome(action.key, True)
+def obtain(action: Action, store: Store, beat: Path, progress: Progress, work: Callable[[Action], Outcome]) -> Outcome:
+    """Have an action done that the store was found to lack, unless another job does it meanwhile.
+
+    The stage will read its inputs, so their bytes are looked at first, even if nothing seems to have touched them.
+
+    Parameters
+    ----------
+    action : Action
+    store : Store
+    beat : Path
+        Sign of life of this job.
+    progress : Progress
+    work : callable
+        Does an action.
+    """
+    sure = identify(action.task, store.digests(progress, thorough=True))
+    found = fetch(sure, store, progress) if sure.key != action.key else None
+    if found is not None:
+        return found
+    with claim(store.claims, sure.key, beat, progress.note) as waited:
+        found = fetch(sure, store, progress) if waited else None
+        return work(sure) if found is None else found
 
 
-def load_stages(makers: Mapping[str, Mapping[str, Any]], store: Path, threads: int) -> None:
+def fetch(action: Action, store: Store, progress: Progress) -> Outcome | None:
+    """Put the outputs of an action in place if the store, or its fallback, has them; else return None."""
+    for folder in filter(None, (store.folder, store.fallback)):
+        try:
+            record = read_record(folder, action.key)
+            if record is None:
+                continue
+            outputs = record["outputs"]
+            if outputs.keys() != action.task.outputs.keys():
+                raise BadRecord("names other outputs than the stage has")
+            if folder != store.folder:
+                _copy_action(record, store)
+            _check_out(store, outputs, action.task.outputs)
+        except BadRecord as fault:
+            progress.note(f"the record of this work {fault}, so the work is done again")
+        except DamagedObject as fault:
+            progress.note(f"{fault}, so the work is done again")
+        else:
+            return Outcome(action.key, True)
+    return None
+
+
+def load_stages(makers: Mapping[str, Mapping[str, Any]], store: Path, threads: int) -> str:
     """Import stages by full name, set for a number of threads.
 
-    Kernels that they compile are kept in the store, apart for every state of their code, which `makers` tells.
+    Kernels that they compile are kept in the store, apart for every state of their code, which `makers` tells. Returns
+    why they are kept elsewhere, or an empty text.
     """
     _limit_threads(threads)
-    _keep_kernels(store / "kernels" / digest_value([makers[module] for module in makers])[:16])
+    folder, reason = choose_folder(store)
+    _keep_kernels(folder / digest_value([makers[module] for module in makers])[:16])
     for module in makers:
         importlib.import_module(module)
+    return reason
 
 
-def make(action: Action, store: Path, job: Job, started: float) -> Outcome:
+def make(action: Action, store: Store, job: Job, started: float) -> Outcome:
     """Run a stage that is loaded, keep what it makes in the store and put it in place.
 
     Parameters
     ----------
     action : Action
-    store : Path
+    store : Store
     job : Job
         Given to the stage.
     started : float
         When the work on it began, by the monotonic clock.
     """
-    objects, outputs = _objects(store), action.task.outputs
+    objects, outputs = store.objects, action.task.outputs
     _forget_peak_memory()
-    with _scratch_folder(store / "scratch", action.key) as folder:
+    with _scratch_folder(store.folder / "scratch", action.key) as folder:
         built = {name: folder / name / path.name for name, path in outputs.items()}
         _run_stage(action, built, job)
         sizes = {name: _size(path) for name, path in built.items()}
@@ -114,10 +220,31 @@ def make(action: Action, store: Path, job: Job, started: float) -> Outcome:
         "peak_memory_mb": _peak_memory_mb(),
     }
     # last, so that what it names is there
-    text = json.dumps({**action.source, **action.maker, **made}, sort_keys=True, indent=1)
-    write_atomically(_record(store, action.key), text.encode() + b"\n")
-    _check_out(objects, contents, outputs)
+    write_record(store.folder, action.key, {**action.source, **action.maker}, made)
+    _check_out(store, contents, outputs)
     return Outcome(action.key, False)
+
+
+@contextmanager
+def explained(store: Path) -> Iterator[None]:
+    """Turn a full disk, or a store that cannot be written to, into one sentence.
+
+    Raises
+    ------
+    UserError
+    """
+    try:
+        yield
+    except OSError as fault:
+        place = str(fault.filename or store)
+        if fault.errno in _FULL or (
+            fault.errno in _FORBIDDEN and Path(store).absolute() in Path(place).absolute().parents
+        ):
+            raise UserError(
+                f"{place}: expected to write finished work to the store {store}, got: {fault.strerror}; free space, "
+                "or name another folder as `store`. What was finished before is still good."
+            ) from None
+        raise
 
 
 def _run_stage(action: Action, outputs: Mapping[str, Path], job: Job) -> None:
@@ -130,14 +257,6 @@ def _run_stage(action: Action, outputs: Mapping[str, Path], job: Job) -> None:
     missing = [name for name, path in outputs.items() if not path.exists()]
     if missing:
         raise RuntimeError(f"{task.module} did not write its output {', '.join(missing)}")
-
-
-def _record(store: Path, key: str) -> Path:
-    return store / "actions" / key[:2] / f"{key}.json"
-
-
-def _objects(store: Path) -> Objects:
-    return Objects(store / "objects", InputDigests(store / "digests"))
 
 
 @contextmanager
@@ -153,18 +272,23 @@ def _scratch_folder(scratch: Path, key: str) -> Iterator[Path]:
         remove(folder)
 
 
-def _check_out(objects: Objects, contents: Mapping[str, Content], outputs: Mapping[str, Path]) -> None:
+def _check_out(store: Store, contents: Mapping[str, Content], outputs: Mapping[str, Path]) -> None:
     for name, path in outputs.items():
-        objects.check_out(contents[name], path)
+        store.objects.check_out(contents[name], path)
+        if store.made is not None:
+            Made(store.made).remember(path, contents[name])
 
 
-def _read_outputs(record: Path) -> dict[str, Content] | None:
-    """Return what an action made, or None if it is not known or its record is damaged."""
+def _copy_action(record: Mapping[str, Any], store: Store) -> None:
+    """Copy what an action made, and its record, from the fallback; where the store cannot be written to, do not."""
     try:
-        outputs = json.loads(record.read_text())["outputs"]
-    except (OSError, ValueError, KeyError, TypeError):
-        return None
-    return outputs if isinstance(outputs, dict) else None
+        for digest in digests_of(record["outputs"]):
+            if not store.objects.has(digest):
+                store.objects.keep_copy(digest)
+        identity = {name: record[name] for name in IDENTITY}
+        write_record(store.folder, record["key"], identity, {name: record[name] for name in MADE})
+    except OSError:  # it is put in place from the fallback itself
+        pass
 
 
 def _limit_threads(threads: int) -> None:
@@ -180,6 +304,7 @@ def _keep_kernels(folder: Path) -> None:
     Of a kernel that calls kernels of other files, numba notices edits in its own file only.
     """
     os.environ["NUMBA_CACHE_DIR"] = os.path.abspath(folder)
+    os.environ["NUMBA_CACHE_LOCATOR_CLASSES"] = "threedfs.store.kernel_cache.Locator"
 
 
 def _size(path: Path) -> int:
