@@ -8,6 +8,7 @@ import webbrowser
 from collections.abc import Sequence
 from pathlib import Path
 
+from threedfs.cli import store
 from threedfs.cli.request import INTERRUPTED, QUALITIES, count_cores, read_height
 from threedfs.errors import UserError
 
@@ -82,6 +83,8 @@ def _make_parser() -> argparse.ArgumentParser:
         score.add_argument(f"--true-{what}", type=Path, help="what it is scored against")
     score.add_argument("--csv", type=Path, help="write the figures to this file as well")
     score.set_defaults(act=_score)
+
+    store.add_parser(actions)
 
     methods = actions.add_parser("methods", help="list the ways to a mesh or masks")
     methods.set_defaults(act=_list_methods)

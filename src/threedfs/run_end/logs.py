@@ -77,4 +77,4 @@ def _read_lines(log: Path) -> list[str]:
 
 
 def _find_logs(folder: Path) -> list[Path]:
-    return sorted(path for path in folder.rglob("*.log") if "logs" in path.relative_to(folder).parts)
+    return sorted(path for path in folder.rglob("*.log") if "logs" in path.relative_to(folder.parent).parts)

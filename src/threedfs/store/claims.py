@@ -71,9 +71,8 @@ def find_holder(place: Path, beat: Path) -> str | None:
     now = read_clock(beat)
     try:
         content = json.loads(_read(place))
-        host, process, name = content["host"], content["process"], content["beat"]
-        other = place.parent / Path(name).name
-    except (ValueError, KeyError, TypeError):
+        host, process, other = content["host"], int(content["process"]), place.parent / Path(content["beat"]).name
+    except (ValueError, KeyError, TypeError, RecursionError):
         # being written in this moment, or damaged
         try:
             return "another job" if now - os.lstat(place).st_mtime < STALE and place.is_file() else None
