@@ -136,14 +136,15 @@ class Objects:
             copy_verified(self.folder, digest, target)
         except DamagedObject as fault:
             place = self.path(digest)
+            missing = not os.path.lexists(place)
             if place.is_symlink() or os.access(place, os.R_OK):  # what others may read is not ours to judge
                 _remove_if_possible(place)
             if self.fallback is None:
                 raise
             try:
                 copy_verified(self.fallback, digest, target)
-            except DamagedObject:
-                raise fault from None
+            except DamagedObject as second:
+                raise (second if missing else fault) from None
 
 
 def copy_verified(folder: Path, digest: str, target: Path) -> None:

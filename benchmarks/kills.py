@@ -1,0 +1,144 @@
+"""Kill jobs and runs of the workflow at random, and see that nothing damaged is left or believed.
+
+The stages are the stand-ins of the tests, the store is the real one. A run is started, one of its jobs or the run
+itself is sent a signal at a random moment, and it is started again, until it ends well; then all begins anew.
+After every kill: no process of the run is left after five seconds, and store and results hold nothing damaged. After
+every run that ended well: its results have the bytes of one that nobody disturbed.
+
+Run as ``python benchmarks/kills.py --jobs 180 --runs 50`` in the project's folder.
+"""
+
+from __future__ import annotations
+
+import argparse
+import importlib.util
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections import Counter
+from pathlib import Path
+
+import psutil
+
+from threedfs.store.audit import audit_results, audit_store
+
+ROOT = Path(__file__).resolve().parents[1]
+SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
+PATIENCE = 5.0
+MARK = "THREEDFS_KILLS"
+
+
+def main() -> int:
+    """Kill as often as asked; print figures, and what went wrong; return 1 if anything did."""
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("--jobs", type=int, default=180, help="signals to jobs (180)")
+    parser.add_argument("--runs", type=int, default=50, help="signals to runs (50)")
+    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--seconds", type=float, default=float("inf"), help="stop after so long")
+    parser.add_argument("--target", action="append", default=[], help="a file that each run makes (all)")
+    arguments = parser.parse_args()
+    draw, begun = random.Random(arguments.seed), time.monotonic()
+    targets = ["job"] * arguments.jobs + ["run"] * arguments.runs
+    draw.shuffle(targets)
+    counts, faults = Counter(), []
+    with tempfile.TemporaryDirectory(prefix="threedfs-kills-") as folder:
+        project = _make_project(Path(folder) / "project")
+        before = time.monotonic()
+        project.run(*arguments.target)
+        length, right = time.monotonic() - before, project.artifacts()
+        print(f"a run takes {length:.1f} s and makes {len(right)} files", flush=True)
+        shutil.rmtree(project.folder / "results")
+        while targets and time.monotonic() - begun < arguments.seconds:
+            how = draw.choice(SIGNALS)
+            hit, status = _disturb(project, arguments.target, targets[-1], how, draw.uniform(0.05, 1.0) * length)
+            if hit:
+                counts[f"{targets.pop()} {how.name}"] += 1
+                print(f"{sum(counts.values())}: {hit}, status {status}", flush=True)
+            faults += [f"{hit}: {fault}" for fault in _find_faults(project)]
+            if status == 0:
+                counts["runs that ended well"] += 1
+                if project.artifacts() != right:
+                    faults.append(f"{hit}: the results differ")
+                shutil.rmtree(project.folder / "results")
+        if (project.folder / "results").is_dir():
+            project.run(*arguments.target)
+            counts["runs that ended well"] += 1
+            if project.artifacts() != right:
+                faults.append("the last results differ")
+    for name, count in sorted(counts.items()):
+        print(f"{name:24}{count:>5}")
+    print(f"{'seconds':24}{time.monotonic() - begun:>5.0f}")
+    print(*faults, f"faults: {len(faults)}", sep="\n")
+    return 1 if faults else 0
+
+
+def _disturb(project, files: list[str], target: str, how: signal.Signals, delay: float) -> tuple[str, int]:
+    """Start a run and send a signal; return whom it was sent to (empty: it had ended before), and the exit status."""
+    environment = {**project.environment, MARK: str(os.getpid()), "STUB_PAUSE": "0.02"}
+    quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
+    running = subprocess.Popen(project.command, cwd=project.folder, env=environment, start_new_session=True, **quiet)
+    until, hit = time.monotonic() + delay, ""
+    while time.monotonic() < until and running.poll() is None:
+        time.sleep(0.01)
+    while running.poll() is None and not hit:
+        found = [running.pid] if target == "run" else _jobs_of(running.pid)
+        if found:
+            try:
+                chosen = random.Random(delay).choice(found)
+                os.kill(chosen, how)
+                hit = f"{how.name} to a {target} after {delay:.1f} s"
+            except ProcessLookupError:
+                continue
+        time.sleep(0.005)
+    return hit, running.wait()
+
+
+def _jobs_of(process: int) -> list[int]:
+    """Return the processes below a run: its jobs, their workers and signs of life."""
+    try:
+        return [child.pid for child in psutil.Process(process).children(recursive=True)]
+    except psutil.NoSuchProcess:
+        return []
+
+
+def _find_faults(project) -> list[str]:
+    """Return what is wrong after a kill: processes that are left, damage in the store and in results."""
+    end = time.monotonic() + PATIENCE
+    while (left := _list_left()) and time.monotonic() < end:
+        time.sleep(0.05)
+    faults = [f"left after {PATIENCE:g} s: {words}" for words in left]
+    for process in left:
+        psutil.Process(process).kill()
+    audit = audit_store(project.folder / "results/.store")
+    audit_results(project.folder / "results", audit)
+    return faults + audit.damage
+
+
+def _list_left() -> list[int]:
+    """Return the processes of runs that this one has started."""
+    found = []
+    for process in psutil.process_iter():
+        try:
+            if process.environ().get(MARK) == str(os.getpid()) and process.status() != psutil.STATUS_ZOMBIE:
+                found.append(process.pid)
+        except (psutil.NoSuchProcess, psutil.AccessDenied):
+            continue
+    return found
+
+
+def _make_project(folder: Path):
+    """Copy the project, with stand-ins for its stages."""
+    path = ROOT / "tests/workflow/conftest.py"
+    specification = importlib.util.spec_from_file_location("stand_ins", path)
+    module = importlib.util.module_from_spec(specification)
+    specification.loader.exec_module(module)
+    return module.make_project(folder)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
