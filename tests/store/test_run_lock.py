@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import signal
 
 import pytest
@@ -42,5 +43,12 @@ def test_lock_of_a_living_run_stays_and_that_of_a_killed_one_goes(folder, spawn,
 
 def test_folder_is_made(tmp_path):
     held = take_over(tmp_path / "new")
+    assert held is not None
+    held.close()
+
+
+def test_what_is_no_file_holds_nobody_up(tmp_path):
+    os.mkfifo(tmp_path / "run.lock")
+    held = take_over(tmp_path, patience=0.2)
     assert held is not None
     held.close()

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import fcntl
+import os
 import time
 from pathlib import Path
 from typing import TextIO
+
+from threedfs.store.files import remove
 
 
 def take_over(folder: Path, patience: float = 5.0) -> TextIO | None:
@@ -26,8 +29,11 @@ def take_over(folder: Path, patience: float = 5.0) -> TextIO | None:
     file or None
         To be kept open for as long as the process runs; None if another run is alive, whose locks then stay.
     """
-    folder.mkdir(exist_ok=True)
-    file = open(folder / "run.lock", "w")
+    folder.mkdir(parents=True, exist_ok=True)
+    place = folder / "run.lock"
+    if os.path.lexists(place) and (place.is_symlink() or not place.is_file()):
+        remove(place)  # a pipe would be waited on for ever
+    file = open(place, "w")
     end = time.monotonic() + patience
     while True:
         try:
