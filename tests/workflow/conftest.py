@@ -132,14 +132,14 @@ class Project:
         file.write_text(text.replace(old, new, 1))
 
     def artifacts(self) -> dict[str, bytes]:
-        """Read all results by relative path, without logs, benchmarks, the store, and reports, which tell costs."""
+        """Read all results by relative path, without logs, benchmarks, the store, notes, and reports, which tell costs."""
         results = self.folder / "results"
         files = (file for file in sorted(results.rglob("*")) if file.is_file())
         names = ((file.relative_to(results), file) for file in files)
         kept = (
             (name, file)
             for name, file in names
-            if not {"logs", "benchmarks", ".store", "report.html"} & set(name.parts)
+            if not {"logs", "benchmarks", ".store", ".made", "report.html"} & set(name.parts)
         )
         return {name.as_posix(): file.read_bytes() for name, file in kept}
 

@@ -24,7 +24,16 @@ from threedfs.store.heartbeat import beating
 from threedfs.store.kernels import choose_folder
 from threedfs.store.made import Made, ResultGuard
 from threedfs.store.objects import DamagedObject, Objects
-from threedfs.store.records import IDENTITY, MADE, BadRecord, Content, digests_of, read_record, write_record
+from threedfs.store.records import (
+    IDENTITY,
+    MADE,
+    BadRecord,
+    Content,
+    digests_of,
+    read_record,
+    record_path,
+    write_record,
+)
 
 _FULL = (errno.ENOSPC, errno.EDQUOT, errno.EROFS)
 _FORBIDDEN = (errno.EACCES, errno.EPERM)
@@ -149,12 +158,14 @@ def obtain(action: Action, store: Store, beat: Path, progress: Progress, work: C
     work : callable
         Does an action.
     """
+    unknown = not record_path(store.folder, action.key).exists()
     sure = identify(action.task, store.digests(progress, thorough=True))
     found = fetch(sure, store, progress) if sure.key != action.key else None
     if found is not None:
         return found
     with claim(store.claims, sure.key, beat, progress.note) as waited:
-        found = fetch(sure, store, progress) if waited else None
+        done = waited or (unknown and record_path(store.folder, sure.key).exists())  # meanwhile, by another
+        found = fetch(sure, store, progress) if done else None
         return work(sure) if found is None else found
 
 

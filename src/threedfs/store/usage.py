@@ -18,6 +18,8 @@ from threedfs.store.records import BadRecord, digests_of, parse_record
 
 KEPT_DAYS = 30.0
 """Kernels that were not read for so long are taken to be of code that is gone."""
+_ABANDONED = 86400.0  # seconds after which work in progress is that of a killed job
+_PARTS = ("objects", "actions", "digests", "kernels")
 
 
 @dataclass(frozen=True)
@@ -86,8 +88,9 @@ def find_unneeded(store: Path, keys: Collection[str], now: float | None = None) 
         *(path for path in walk_places(store / "objects") if path.name not in objects),
         *(path for path in walk_places(store / "actions") if path.stem not in kept),
         *(path for path in walk(store / "kernels") if path.suffix != ENDING or _age(path, now) > KEPT_DAYS * 86400),
-        *(path for path in sorted((store / "scratch").glob("*")) if _age(path, now) > 86400),
-        *(path for path in sorted((store / "claims").glob("*")) if _age(path, now) > 86400),
+        *(path for path in sorted((store / "scratch").glob("*")) if _age(path, now) > _ABANDONED),
+        *(path for path in sorted((store / "claims").glob("*")) if _age(path, now) > _ABANDONED),
+        *(path for part in _PARTS for path in sorted((store / part).rglob("*.part")) if _age(path, now) > _ABANDONED),
     ]
 
 
