@@ -132,7 +132,7 @@ class Project:
         file.write_text(text.replace(old, new, 1))
 
     def artifacts(self) -> dict[str, bytes]:
-        """Read all results by relative path, without logs, benchmarks, the store, notes, and reports, which tell costs."""
+        """Read all results by relative path, without logs, benchmarks, store, notes, and reports (they tell costs)."""
         results = self.folder / "results"
         files = (file for file in sorted(results.rglob("*")) if file.is_file())
         names = ((file.relative_to(results), file) for file in files)
