@@ -11,6 +11,7 @@ _COLUMNS = (
     ("IoU mean", "iou_mean", ".3f"),
     ("median", "iou_median", ".3f"),
     ("min", "iou_min", ".3f"),
+    ("other frames", "iou_frames_mean", ".3f"),
     ("unseen IoU", "iou_unseen_mean", ".3f"),
     ("depth error %", "depth_error_median", ".2f"),
     ("F-score 1 %", "mesh_f_score_1", ".3f"),
