@@ -17,7 +17,7 @@ SEQUENCE_FILES = ("source", "cameras", "calibration", "truth_masks", "truth_came
 _FILES = (*SEQUENCE_FILES, "keyframe_masks")
 """With those of them that a sequence may have in two roles."""
 
-RUN_FILES = {"README.md", "benchmarks", "logs", "metrics.csv", "plots", "tables"}
+RUN_FILES = {"README.md", "benchmarks", "index.html", "logs", "metrics.csv", "plots", "tables"}
 
 _DEPTH_SCALE = 1000.0  # levels of a true depth image in a metre: millimetres
 

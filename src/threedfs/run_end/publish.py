@@ -40,7 +40,7 @@ def publish(results: Path, docs: Path) -> None:
     UserError
         If no run has left tables, or `results.md` has lost its marks.
     """
-    figures = results / "tables" / "metrics.csv"
+    figures = results / "metrics.csv"
     if not figures.is_file():
         raise UserError(f"{figures}: expected the figures of a run, found none; run snakemake first.")
     page = docs / "results.md"
