@@ -131,7 +131,7 @@ def test_the_report_shows_the_methods_of_the_run_and_after_a_failure_nothing_old
     assert "data-page" not in page and "<h2>Keyframes" not in page and "mesh.glb" not in page
     page = write_report(folder, Context(store, failures=["evaluate: no."], scored_only=True)).read_text()
     assert "data-page" in page and "evaluate: no." in page and "surface/mesh.glb" in page
-    assert not read_summary(folder).good
+    assert read_summary(folder).failures == ("evaluate: no.",) and read_summary(folder).picture
 
 
 def test_results_open_as_arrays(run):

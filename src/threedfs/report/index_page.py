@@ -22,7 +22,8 @@ class Row:
     picture : str
         Address of an image inside of the page, empty without any.
     verdict : str
-    good : bool
+    good : bool, optional
+        Whether all checks passed; None where there is nothing to check.
     figures : mapping of str to str
         By the title of their column.
     """
@@ -31,7 +32,7 @@ class Row:
     report: str = ""
     picture: str = ""
     verdict: str = ""
-    good: bool = False
+    good: bool | None = None
     figures: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -40,7 +41,7 @@ def write_index(rows: Sequence[Row], columns: Sequence[str]) -> str:
     shown = [column for column in columns if any(column in row.figures for row in rows)]
     head = "".join(f"<th>{html.escape(title)}</th>" for title in ("", "sequence", "verdict", *shown))
     lines = "".join(_lay_out(row, shown) for row in rows)
-    good = sum(row.good for row in rows)
+    good = sum(row.good is True for row in rows)
     return wrap_page(
         "threedfs",
         f"<style>{_STYLE}</style><h1>{len(rows)} sequence{'s' * (len(rows) != 1)}</h1>"
@@ -55,7 +56,8 @@ def _lay_out(row: Row, columns: Sequence[str]) -> str:
         place = html.escape(quote(row.report))
         name, picture = f'<a href="{place}">{name}</a>', picture and f'<a href="{place}">{picture}</a>'
     cells = [picture, name, html.escape(row.verdict), *(html.escape(row.figures.get(title, "")) for title in columns)]
-    return f'<tr class="{"good" if row.good else "bad"}">' + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>"
+    kind = {True: "good", False: "bad", None: "unknown"}[row.good]
+    return f'<tr class="{kind}">' + "".join(f"<td>{cell}</td>" for cell in cells) + "</tr>"
 
 
 _STYLE = "td img{width:160px;border-radius:5px;display:block}tr.bad td:nth-child(3){color:#a3241a;min-width:14rem}"

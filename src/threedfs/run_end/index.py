@@ -36,14 +36,14 @@ def write_index_page(results: Path, sequences: Iterable[str], metrics: Sequence[
 
 
 def _describe(folder: Path, figures: Mapping[tuple[str, str], Mapping[str, float]]) -> Row:
-    summary, name = read_summary(folder) or Summary(), folder.name
+    name, summary = folder.name, read_summary(folder) or Summary(verdict="not finished")
     method = summary.method or next((each for each in summary.methods if (name, each) in figures), "")
     found = {**figures.get((name, ""), {}), **figures.get((name, method), {})}
     return Row(
         name,
         f"{name}/report.html" if (folder / "report.html").is_file() else "",
         summary.picture,
-        " ".join(summary.failures) or summary.verdict or "not finished",
-        summary.good,
+        " ".join(summary.failures) or summary.verdict or "no mesh",
+        False if summary.failures else summary.good,
         {title: format(found[key], form) for title, key, form in COLUMNS if key in found},
     )

@@ -27,7 +27,7 @@ _NEW = f"# Results\n\n{BEGIN}\n{END}\n"
 
 
 def publish(results: Path, docs: Path) -> None:
-    """Write `results.csv`, `results.md` and `plots/*.svg` from the tables and plots of the last run.
+    """Write `results.csv`, `results.md` and `plots/*.svg` from the tables and plots of a folder of results.
 
     Of `results.md` only the part between the two marks is written; what stands around it is kept.
 

@@ -38,7 +38,7 @@ _LONGEST, _STILL = 420, 900
 """Pixels along the longer side of a keyframe's pictures, and of the mesh's."""
 _SMALL = 240
 """The same of the picture on the page over all sequences."""
-_PICTURES = 6_000_000
+_PICTURES = 5_000_000
 """Characters that the pictures of all keyframes may take in the page: many keyframes have smaller ones."""
 _KINDS = 4
 """Pictures of a keyframe."""
@@ -69,7 +69,7 @@ class Context:
         Of the sequence.
     failures : sequence of str
         Sentences of its jobs that failed.
-    methods : collection of str, optional
+    methods : tuple of str, optional
         Those of the run; what others left in the folder is not shown. All, if not given.
     stale : collection of str
         Files and folders that the run should have made anew and did not.
@@ -83,7 +83,7 @@ class Context:
     store: Path
     metrics: Sequence[Metric] = ()
     failures: Sequence[str] = ()
-    methods: Collection[str] | None = None
+    methods: tuple[str, ...] | None = None
     stale: Collection[str] = ()
     scored_only: bool = False
     settings: Mapping[str, str] = field(default_factory=dict)
@@ -118,10 +118,10 @@ def write_report(folder: Path, context: Context) -> Path:
     with atomic(folder / "report.html") as temporary:
         temporary.write_text(write_page(report), encoding="utf-8")
     summary = Summary(
-        tuple(context.methods or ()),
+        context.methods or (),
         (known.method or "") if shown else "",
         sum_up(list(findings)) if findings else "",
-        bool(findings) and all(finding.good for finding in findings) and not context.failures,
+        all(finding.good for finding in findings) if findings else None,
         tuple(context.failures),
         embed_image(shown.still, _SMALL, 75) if shown else _first_picture(report),
     )
@@ -155,7 +155,8 @@ def write_reports(folders: Sequence[Path], contexts: Callable[[str], Context], n
             bare = Report(folder.name, failures=tuple(context.failures), settings=context.settings)
             with atomic(folder / "report.html") as temporary:
                 temporary.write_text(write_page(bare), encoding="utf-8")
-            write_summary(folder, Summary(tuple(context.methods or ()), failures=tuple(context.failures)))
+            failed = "its report could not be made"
+            write_summary(folder, Summary(context.methods or (), verdict=failed, failures=tuple(context.failures)))
 
 
 def find_out(folder: Path, methods: Collection[str] | None = None) -> list[Finding]:

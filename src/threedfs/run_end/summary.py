@@ -23,8 +23,8 @@ class Summary:
         Whose mesh is shown, empty without any.
     verdict : str
         One sentence; empty where there was nothing to judge.
-    good : bool
-        Whether all checks passed.
+    good : bool, optional
+        Whether all checks passed; None where there was nothing to judge.
     failures : tuple of str
         Sentences of the jobs that failed.
     picture : str
@@ -34,7 +34,7 @@ class Summary:
     methods: tuple[str, ...] = ()
     method: str = ""
     verdict: str = ""
-    good: bool = False
+    good: bool | None = None
     failures: tuple[str, ...] = ()
     picture: str = ""
 
