@@ -39,7 +39,7 @@ rule all:
             for method in METHODS
             for name in results_of_method(method)
         ],
-        "results/metrics.csv",
+        "results/tables/metrics.csv",
 
 
 onstart:

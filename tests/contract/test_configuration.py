@@ -153,6 +153,47 @@ def test_video_takes_the_place_of_all_sequences(defaults, tmp_path, monkeypatch)
     assert list(list_sequences(config, ROOT)) == ["mug.v2"]
 
 
+def test_keyframes_are_at_the_truth_only_where_that_is_asked_for(defaults, tmp_path, monkeypatch):
+    """Contract: a sequence's own word goes before that of the run, and a missing file leaves none."""
+    monkeypatch.chdir(tmp_path)
+    Path("mug.mp4").touch()
+    Path("masks").mkdir()
+    plain = {"source": "mug.mp4", "truth": {"masks": "masks"}}
+    entries = {
+        "plain": plain,
+        "yes": {**plain, "keyframes_at_truth": True},
+        "no": {**plain, "keyframes_at_truth": False},
+        "bare": {"source": "mug.mp4"},
+        "lost": {**plain, "cameras": "nowhere", "keyframes_at_truth": True},
+    }
+
+    def masks(**config):
+        found, _ = load_sequences({**defaults, "sequences": entries, **config}, ROOT)
+        return {name: entry["keyframe_masks"] for name, entry in found.items()}
+
+    nothing = dict.fromkeys(entries)
+    assert masks() == {**nothing, "yes": "masks"}
+    assert masks(keyframes_at_truth=True) == {**nothing, "plain": "masks", "yes": "masks"}
+    assert all(
+        entry["truth_masks"]
+        for name, entry in list_sequences({**defaults, "sequences": entries}, ROOT).items()
+        if name != "bare"
+    )
+
+
+@pytest.mark.parametrize("name", ["benchmark", "datasets/tabletop12", "datasets/real", "datasets/object_videos"])
+def test_the_figures_of_the_benchmark_stay_over_all_true_masks(defaults, name):
+    config = {**merged(defaults, yaml.safe_load((ROOT / f"config/{name}.yaml").read_text())), "skip_absent": False}
+    sequences = list_sequences(config, ROOT)
+    assert any(entry["truth_masks"] for entry in sequences.values())
+    assert all(entry["keyframe_masks"] == entry["truth_masks"] for entry in sequences.values())
+
+
+def test_so_do_those_of_the_sample(defaults):
+    sample = list_sequences(defaults, ROOT)["sample"]
+    assert sample["keyframe_masks"] == sample["truth_masks"] is not None
+
+
 def test_absent_file_is_named_with_its_key(defaults, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     config = {**defaults, "sequences": {"mug": {"source": str(tmp_path), "truth": {"mesh": "mug.ply"}}}}

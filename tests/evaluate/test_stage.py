@@ -12,11 +12,15 @@ from threedfs.io.depth_maps import read_depth_map, write_depth_map
 from threedfs.io.images import read_mask, write_mask
 from threedfs.io.keyframes import read_keyframes, write_keyframes
 from threedfs.io.meshes import read_mesh, write_mesh
+from threedfs.io.poses import read_poses
 from threedfs.io.volumes import read_silhouettes, write_silhouettes
+from threedfs.object.silhouettes import draw_source_silhouette
 from threedfs.params.evaluate import EvaluateParams
 from threedfs.params.evaluate_reconstruction import EvaluateReconstructionParams
 from threedfs.types import Mesh
 
+LENS, SOURCE = (0.08, 0.01), (120, 160)
+"""Distortion and shape of the run's source."""
 SOUNDNESS = {"mesh_genus", "mesh_closed", "mesh_pieces", "mesh_filled"}
 
 
@@ -123,11 +127,54 @@ def test_refuses_masks_that_belong_to_no_frame(finished):
         finished.score(masks_truth=folder)
 
 
-def test_tells_of_masks_of_frames_that_are_no_keyframes(finished):
+def test_a_mask_of_a_working_frame_is_compared_with_the_mesh_as_its_estimated_camera_sees_it(finished):
+    """Exact: frame 110 is no keyframe; drawn with and without the true cameras, which it does not need."""
+    mesh, views = (
+        read_mesh(finished.inputs["mesh"]),
+        {view.name: view for view in read_poses(finished.inputs["poses"]).views},
+    )
+    drawn = draw_source_silhouette(mesh, views["000110"], LENS, SOURCE)
+    write_mask(finished.inputs["masks_truth"] / "110.png", drawn)
+    found = finished.score()
+    assert found["iou_frames"] == {"000110": 1.0} and found["iou_frames_mean"] == 1.0
+    assert set(found["iou"]) == {f"{10 * number:06d}" for number in range(6)}
+    assert found["masks_without_keyframe"] == 1 and "masks_left_out" not in found
+    assert "scored nowhere" not in finished.log.getvalue()
+    alone = finished.score(cameras_truth=None, mesh_truth=None)
+    assert alone["iou_frames"] == {"000110": 1.0}
+    assert alone["masks_left_out"] == 2  # the unseen views need the true cameras
+
+
+def test_a_method_without_a_mesh_is_scored_at_keyframes_alone(finished):
     folder = finished.inputs["masks_truth"]
     write_mask(folder / "000110.png", read_mask(folder / "20.png"))
-    assert finished.score()["masks_without_keyframe"] == 1
-    assert "no score for frames with a true mask that are no keyframes: 000110" in finished.log.getvalue()
+    found = finished.score(mesh=None)
+    assert len(found["iou"]) == 6 and "iou_frames" not in found and "iou_unseen" not in found
+    assert found["masks_left_out"] == 3
+    assert (
+        "3 of 9 true masks are scored nowhere: 000110, between_0, between_1; without a mesh," in finished.log.getvalue()
+    )
+
+
+def test_masks_of_frames_that_were_not_worked_on_are_left_out_and_counted(finished):
+    """Exact: of the frames between the working ones there is no camera; the rest is scored as without them."""
+    before = finished.score()
+    folder = finished.inputs["masks_truth"]
+    for number in (5, 17):
+        write_mask(folder / f"{number}.png", read_mask(folder / "20.png"))
+    write_mask(folder / "cover.png", read_mask(folder / "20.png"))
+    found = finished.score()
+    assert found.pop("masks_left_out") == 3 and found.pop("masks_without_keyframe") == 3
+    assert found == {name: value for name, value in before.items() if name != "masks_without_keyframe"}
+    assert "3 of 11 true masks are scored nowhere: 000005, 000017, cover; no camera is known" in finished.log.getvalue()
+
+
+def test_masks_of_such_frames_alone_are_no_error(finished):
+    """Property: a truth may be of any frame of the video; that none can be scored is said."""
+    folder = finished.folder / "between"
+    write_mask(folder / "5.png", np.ones((120, 160), bool))
+    found = finished.score(masks_truth=folder)
+    assert found["masks_left_out"] == 1 and "iou_mean" not in found
 
 
 def test_refuses_an_unreadable_mesh(finished):

@@ -14,6 +14,7 @@ import trimesh
 
 from threedfs.report.camera_path import draw_path, widest_gap
 from threedfs.report.findings import Facts, judge, sum_up
+from threedfs.report.index_page import Row, write_index
 from threedfs.report.page import KeyframePictures, Report, write_page
 from threedfs.report.pictures import color_depth, color_normals, embed_image, outline_mask
 from threedfs.report.viewer import embed_viewer
@@ -118,6 +119,42 @@ def test_an_image_in_the_page_is_the_image():
     read = cv2.imdecode(np.frombuffer(base64.b64decode(data), np.uint8), cv2.IMREAD_COLOR)[..., ::-1]
     assert head == "data:image/jpeg;base64" and read.shape == (30, 45, 3)
     assert np.abs(read.astype(int) - (200, 40, 90)).max() < 6
+
+
+@pytest.mark.parametrize("keyframes", [24, 200])
+def test_the_pictures_of_many_keyframes_fit_into_the_page(keyframes):
+    """Property: noise, which compresses worst, in four pictures a keyframe; few keyframes keep theirs whole."""
+    image = np.random.default_rng(0).integers(0, 256, (420, 560, 3), dtype=np.uint8)
+    smooth = cv2.GaussianBlur(image, (0, 0), 8)
+    most = 5_000_000 / (4 * keyframes)
+    noisy = embed_image(image, 420, 75, most)
+    assert len(noisy) <= most
+    data = base64.b64decode(embed_image(smooth, 420, 75, most).partition(",")[2])
+    _, width = cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR).shape[:2]
+    assert width == 420 if keyframes == 24 else 80 <= width <= 420
+
+
+def test_no_picture_becomes_smaller_than_can_be_seen():
+    data = base64.b64decode(embed_image(np.zeros((60, 90, 3), np.uint8), 90, 75, 1).partition(",")[2])
+    assert cv2.imdecode(np.frombuffer(data, np.uint8), cv2.IMREAD_COLOR).shape[1] == 80
+
+
+def test_the_page_over_all_sequences_has_a_row_for_each():
+    rows = [
+        Row("mug", "mug/report.html", "data:,", "All checks passed.", True, {"IoU mean": "0.9"}),
+        Row("cup", verdict="poses: the camera hardly moves.", good=False),
+        Row("room", verdict="no mesh"),
+    ]
+    page = write_index(rows, ("IoU mean", "closed"))
+    assert page.count('<a href="mug/report.html">') == 2 and "cup/report.html" not in page
+    assert "<th>IoU mean</th>" in page and "closed" not in page
+    assert "3 sequences" in page and "1 passed all checks" in page and page.count('<tr class="bad">') == 1
+
+
+def test_what_comes_from_a_user_is_only_text_on_that_page_too():
+    page = write_index([Row(HOSTILE, HOSTILE, HOSTILE, HOSTILE, False, {HOSTILE: HOSTILE})], (HOSTILE,))
+    assert "<script>" not in page and "'\"1\"'" not in page
+    assert page.count(html.escape(HOSTILE)) >= 5
 
 
 @pytest.mark.parametrize("textured", [True, False])

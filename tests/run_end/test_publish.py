@@ -12,8 +12,9 @@ from threedfs.run_end.publish import BEGIN, END, publish
 def results(tmp_path):
     """What a run leaves behind."""
     folder = tmp_path / "results"
-    write_metrics(folder / "tables/metrics.csv", [Metric("iou_mean", 0.9, "1", "toys", "mug", "fused_sdf")])
+    write_metrics(folder / "metrics.csv", [Metric("iou_mean", 0.9, "1", "toys", "mug", "fused_sdf")])
     write_metrics(folder / "benchmarks/costs.csv", [Metric("seconds", 3.0, "s", "toys", "mug")])
+    (folder / "tables").mkdir()
     (folder / "tables/iou.md").write_text(f"### IoU\n\nfailed: found no a.mp4 in {tmp_path}.\n")
     (folder / "benchmarks/costs.md").write_text("### Seconds\n")
     (folder / "plots").mkdir()

@@ -22,6 +22,8 @@ from threedfs.io.images import read_image, read_mask
 from threedfs.io.metrics import read_metrics
 from threedfs.io.points import read_points
 from threedfs.run_end.export_scene import export_scene
+from threedfs.run_end.report import Context, write_report
+from threedfs.run_end.summary import read_summary
 from threedfs.synthetic.video import write_video
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -111,6 +113,25 @@ def test_the_report_shows_what_was_found_and_the_failed_have_one_too(run):
     assert page.count('class="normals"') == page.count('class="mask"') == 3
     assert "depth.iterations" in page  # differs from the default in this preset
     assert "the camera is static" in (results / "static/report.html").read_text()
+    index = (results / "index.html").read_text()
+    assert index.count("data:image/jpeg") == 1 and "F-score" in index and 'href="gnome/report.html"' in index
+    assert len(index) < 50_000 and "the camera is static" in index
+    assert read_summary(results / "gnome").method == "surface"
+
+
+def test_the_report_shows_the_methods_of_the_run_and_after_a_failure_nothing_old(run, tmp_path):
+    """Contract: what other methods left is not listed; a job that only scores takes no mesh from the page."""
+    folder = tmp_path / "gnome"
+    shutil.copytree(run[0] / "gnome", folder)
+    store = run[0] / ".store"
+    page = write_report(folder, Context(store, methods=("fused_sdf", "gc_2d"))).read_text()
+    assert "fused_sdf/mesh.ply" in page and "surface/" not in page and "gc_2d/masks" in page
+    stale = {str(folder / "06_depth"), str(folder / "04_crops/crops.zarr.zip")}
+    page = write_report(folder, Context(store, failures=["crops: no."], stale=stale)).read_text()
+    assert "data-page" not in page and "<h2>Keyframes" not in page and "mesh.glb" not in page
+    page = write_report(folder, Context(store, failures=["evaluate: no."], scored_only=True)).read_text()
+    assert "data-page" in page and "evaluate: no." in page and "surface/mesh.glb" in page
+    assert read_summary(folder).failures == ("evaluate: no.",) and read_summary(folder).picture
 
 
 def test_results_open_as_arrays(run):

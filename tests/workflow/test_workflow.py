@@ -161,6 +161,52 @@ def test_given_cameras_and_calibration_reach_their_stages(project):
     assert "own,mug,fused_sdf" in (project.folder / "results/metrics.csv").read_text()
 
 
+def give_truth(project, text=""):
+    """Write a configuration of one sequence, with a truth that lies beside it, or whatever `text` says."""
+    for name in ("mug.mp4", "cameras.json", "mesh.ply"):
+        (project.folder / name).write_text(name)
+    (project.folder / "masks").mkdir(exist_ok=True)
+    (project.folder / "masks/000001.png").write_text("mask")
+    (project.folder / "mug.yaml").write_text(f"sequences: {{mug: {{source: mug.mp4{text}}}}}\n")
+    return "--configfile", "mug.yaml"
+
+
+TRUTH = ", truth: {masks: masks, cameras: cameras.json, mesh: mesh.ply}, intrinsics: [1, 1, 1, 1]"
+SCORING = Counter(evaluate_reconstruction=1, evaluate=1, collect=1)
+
+
+def test_a_truth_given_later_runs_the_scoring_and_changes_nothing_else(project):
+    """Contract: neither frames nor keyframes look at it, and taken away again, or edited, it costs as little."""
+    project.run(*give_truth(project))
+    made = {name: data for name, data in project.artifacts().items() if name.startswith("mug/0") or "11_object" in name}
+    order = give_truth(project, TRUTH)
+    planned = dict(re.findall(r"^(\w+) +(\d+)$", project.run(*order, "-n"), re.MULTILINE))
+    assert planned == {**dict.fromkeys((*SCORING, "all"), "1"), "total": "4"}
+    output = project.run(*order)
+    assert jobs_done(output) + jobs_taken(output) == SCORING
+    assert {name: project.artifacts()[name] for name in made} == made
+    (record,) = (r for r in records(project.folder / "results", "mug") if r["stage"] == "evaluate")
+    assert all(record["inputs"][name] for name in ("masks_truth", "cameras_truth", "mesh_truth"))
+    (project.folder / "masks/000001.png").write_text("edited")
+    assert set(jobs_done(project.run(*order))) <= set(SCORING)
+    output = project.run(*give_truth(project))
+    assert jobs_done(output) == Counter() and set(jobs_taken(output)) == set(SCORING)
+
+
+def test_keyframes_at_truth_are_chosen_by_the_masks_for_the_whole_run_or_a_sequence(project):
+    """Contract: frames and keyframes get the masks then, under the names that they have had in the store."""
+    at_truth = ", keyframes_at_truth: true"
+    (project.folder / "all.yaml").write_text("keyframes_at_truth: true\n")
+    for text, files in ((TRUTH, ["all.yaml"]), (TRUTH + at_truth, [])):
+        order = [*give_truth(project, text), *files]
+        project.run("results/mug/03_keyframes/keyframes.json", *order)
+        for place in ("01_frames/frames.zarr.zip", "03_keyframes/keyframes.json"):
+            assert json.loads((project.folder / "results/mug" / place).read_text())["inputs"]["masks"]
+    output = project.run("results/mug/03_keyframes/keyframes.json", *give_truth(project, TRUTH))
+    assert jobs_done(output)["frames"] == jobs_done(output)["keyframes"] == 1
+    assert json.loads((project.folder / "results/mug" / place).read_text())["inputs"]["masks"] is None
+
+
 def test_rendered_sequences_of_one_take_are_filmed_once_and_bring_their_truth(project):
     text = "sequences: {one: {rendered: books}, other: {rendered: books, true_cameras: true}}\n"
     (project.folder / "own.yaml").write_text(text)

@@ -130,7 +130,7 @@ rule collect:
             ),
         ],
     output:
-        metrics="results/metrics.csv",
+        metrics="results/tables/metrics.csv",
     log:
         "results/logs/collect.log",
     benchmark:
@@ -145,6 +145,6 @@ rule collect:
         settings=settings_of("collect"),
         seed=config["seed"],
     message:
-        "Collect the figures of all sequences."
+        "Collect the figures of the run."
     script:
         "../scripts/run_stage.py"

@@ -29,7 +29,7 @@ rule calibrate:
 rule frames:
     input:
         source=given("source"),
-        masks=given("truth_masks"),
+        masks=given("keyframe_masks"),
     output:
         frames="results/{sequence}/01_frames/frames.zarr.zip",
     log:
@@ -45,7 +45,7 @@ rule frames:
         code=code_of("frames"),
         settings=settings_of("frames"),
         seed=config["seed"],
-        folders=fingerprint_of("source", "truth_masks"),
+        folders=fingerprint_of("source", "keyframe_masks"),
         refusal=lambda wildcards: MISSING.get(wildcards.sequence, ""),
     message:
         "Decode the frames of {wildcards.sequence}."

@@ -6,7 +6,7 @@ checkpoint keyframes:
         frames="results/{sequence}/01_frames/frames.zarr.zip",
         poses="results/{sequence}/02_poses/poses.json",
         points="results/{sequence}/02_poses/points.zarr.zip",
-        masks=given("truth_masks"),
+        masks=given("keyframe_masks"),
     output:
         keyframes="results/{sequence}/03_keyframes/keyframes.json",
     log:
@@ -22,7 +22,7 @@ checkpoint keyframes:
         code=code_of("keyframes"),
         settings=settings_of("keyframes"),
         seed=config["seed"],
-        folders=fingerprint_of("truth_masks"),
+        folders=fingerprint_of("keyframe_masks"),
     message:
         "Choose the keyframes of {wildcards.sequence}."
     script:

@@ -53,7 +53,12 @@ rule poses:
         seed=config["seed"],
         folders=fingerprint_of("cameras"),
         labels=lambda wildcards: {
-            "intrinsics": SEQUENCES[wildcards.sequence]["intrinsics"]
+            # those that true cameras may have change nothing here
+            "intrinsics": (
+                SEQUENCES[wildcards.sequence]["intrinsics"]
+                if SEQUENCES[wildcards.sequence]["cameras"]
+                else None
+            )
         },
     message:
         "Find the cameras of {wildcards.sequence}."

@@ -25,7 +25,7 @@ def look_on_demand():
 
 
 def finish(unfinished=()):
-    """Write tables and plots and say how the run went; `unfinished` are outputs that it should have made."""
+    """Write tables, plots and reports and say how the run went; `unfinished` are outputs that it should have made."""
     from threedfs.params.changes import list_changes
     from threedfs.run_end.finish import Run, finish_run, report_run
 
@@ -43,5 +43,6 @@ def finish(unfinished=()):
         },
         library_versions(REPORTED),
     )
-    sys.stderr.write(finish_run(run, [str(path) for path in unfinished]))
-    report_run(run, lambda sentence: sys.stderr.write(f"note: {sentence}\n"))
+    stale = {str(path) for path in unfinished}
+    sys.stderr.write(finish_run(run, stale))
+    report_run(run, stale, lambda sentence: sys.stderr.write(f"note: {sentence}\n"))

@@ -26,6 +26,7 @@ from threedfs.report.findings import sum_up
 from threedfs.run_end.export import export
 from threedfs.run_end.report import find_masks, find_method, find_out
 from threedfs.run_end.results import Results, open_results
+from threedfs.run_end.summary import read_summary
 
 _MESHES = {"mesh": "mesh.glb", "detail": "mesh.ply"}
 
@@ -108,7 +109,9 @@ def reconstruct(
 def _conclude(request: Request, out: Path, height: float | None) -> None:
     """Say what a run made of a video, and write the files for printing if its height is known."""
     folder = out / "results" / request.name
-    method, masks = find_method(folder), find_masks(folder)
+    summary = read_summary(folder)
+    methods = summary.methods if summary else None  # what others left in the folder is of earlier runs
+    method, masks = find_method(folder, methods), find_masks(folder, methods)
     if method is not None:
         for what, name in _MESHES.items():
             if (folder / "11_object" / method / name).is_file():
@@ -120,7 +123,7 @@ def _conclude(request: Request, out: Path, height: float | None) -> None:
         print(f"masks    {masks}, {len(list(masks.glob('*.png')))} of them")
     _name_report(folder)
     try:
-        findings = find_out(folder)
+        findings = find_out(folder, methods)
     except (UserError, KeyError, ValueError, OSError) as fault:  # results were damaged: the meshes are named above
         print(f"verdict  none, as results cannot be read: {fault}")
         return

@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 from threedfs.evaluate.scores import Scores
 from threedfs.evaluate.sequence_rows import FOOTERS, pick
 
-_COLUMNS = (
+COLUMNS = (
     ("IoU mean", "iou_mean", ".3f"),
     ("median", "iou_median", ".3f"),
     ("min", "iou_min", ".3f"),
+    ("other frames", "iou_frames_mean", ".3f"),
     ("unseen IoU", "iou_unseen_mean", ".3f"),
     ("depth error %", "depth_error_median", ".2f"),
     ("F-score 1 %", "mesh_f_score_1", ".3f"),
@@ -21,6 +22,7 @@ _COLUMNS = (
     ("closed", "mesh_closed", ".0f"),
     ("seconds", "seconds", ".0f"),
 )
+"""Titles, names and forms of the figures that say most."""
 
 
 def render_summary(tables: Mapping[str, Mapping[str, float]]) -> str:
@@ -38,7 +40,7 @@ def render_summary(tables: Mapping[str, Mapping[str, float]]) -> str:
     can            0.930
     toy rabbit         -
     """
-    columns = [column for column in _COLUMNS if any(column[1] in figures for figures in tables.values())]
+    columns = [column for column in COLUMNS if any(column[1] in figures for figures in tables.values())]
     rows = [["", *(title for title, _, _ in columns)]]
     for label, figures in tables.items():
         rows.append([label, *(format(figures[name], form) if name in figures else "-" for _, name, form in columns)])

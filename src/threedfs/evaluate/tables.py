@@ -21,10 +21,18 @@ def overlap_tables(scores: Scores, dataset: str) -> list[Table]:
     Table 1.
     """
     rows = SequenceRows.find(scores, dataset, _by_method(scores, "iou_mean"))
-    if not rows.measured and not any(failure.sequence in rows.values for failure in scores.failures):
+    others = frame_tables(scores, dataset)
+    if not rows.measured and not others and not any(failure.sequence in rows.values for failure in scores.failures):
         return []
-    ours = rows.render(f"Foreground IoU over keyframes, {dataset}", ("mean", "median"))
-    return [ours, *_printed_table(tuple(rows.values))]
+    note = " ".join([INTERVAL_NOTE, *_tell_left_out(scores, dataset)])
+    ours = rows.render(f"Foreground IoU over keyframes, {dataset}", ("mean", "median"), note)
+    return [ours, *others, *_printed_table(tuple(rows.values))]
+
+
+def frame_tables(scores: Scores, dataset: str) -> list[Table]:
+    """Return the IoU of the mesh's silhouette in working frames that are no keyframes."""
+    rows = SequenceRows.find(scores, dataset, _by_method(scores, "iou_frames_mean"))
+    return [rows.render(f"IoU in other frames, {dataset}", ("mean", "median"))] if rows.measured else []
 
 
 def unseen_tables(scores: Scores, dataset: str) -> list[Table]:
@@ -114,6 +122,19 @@ def cost_tables(scores: Scores, dataset: str, stages: Sequence[str]) -> list[Tab
         if rows.measured:
             tables.append(rows.render(f"{title}, {dataset}", ("mean", footer), note, reasons=False))
     return tables
+
+
+def _tell_left_out(scores: Scores, dataset: str) -> list[str]:
+    """Return a sentence on the true masks that were scored nowhere, if there are any."""
+    counts = {
+        (sequence, method): scores.value(sequence, method, "masks_left_out")
+        for sequence in scores.sequences(dataset)
+        for method in scores.methods
+    }
+    named = [f"{sequence} {method} {count:.0f}" for (sequence, method), count in counts.items() if count]
+    if not named:
+        return []
+    return [f"True masks at frames where a method has none and no camera is known are left out: {', '.join(named)}."]
 
 
 def _by_method(scores: Scores, name: str) -> list[Column]:

@@ -65,6 +65,7 @@ def configuration_schema() -> dict[str, Any]:
             "calibration": _PATH,
             "object": {"type": "boolean"},
             "truth": {"type": ["object", "null"], "additionalProperties": False, "properties": truth},
+            "keyframes_at_truth": {"type": "boolean"},
             "settings": {
                 "type": "object",
                 "additionalProperties": False,
@@ -80,6 +81,7 @@ def configuration_schema() -> dict[str, Any]:
             "additionalProperties": sequence,
             "propertyNames": {"pattern": SEQUENCE_NAME},
         },
+        "keyframes_at_truth": {"type": "boolean"},
         "skip_absent": {"type": "boolean"},
         "methods": {"type": "array", "minItems": 1, "uniqueItems": True, "items": {"enum": [*METHODS]}},
         "variants": {

@@ -34,9 +34,13 @@ video: null
 #     object: true                  # false: no object is looked for, only the depth experiment runs
 #     settings: {depth: {iterations: 12}}  # its own values of the parameters below
 #     truth: {masks: null, cameras: null, mesh: null, depth: null, depth_scale: 1000, depth_camera: null}
+#     keyframes_at_truth: false     # in place of the one below
 #   dragon:
 #     rendered: dragon              # a take of the synthetic data set, with its truth
 sequences: {}
+
+# A truth changes no result; with true it does: frames with a true mask are keyframes, and all methods are scored there.
+keyframes_at_truth: false
 
 # Go on without the sequences whose source is absent; they are named at the start.
 skip_absent: false
@@ -90,6 +94,11 @@ frame's number from 0 (`120.png`) or like the photo; a few are enough. Scores: `
     sequences:
       mug: {source: mug.mp4, truth: {masks: mug_masks}}
 
+They may be added when all is done: only scores are computed. At a keyframe, its mask is scored; at another frame that
+was worked on, the mesh as that frame's camera sees it. A long video is worked on at every n-th frame, and
+`threedfs export results/mug scene --scene` writes those: a mask of a frame between them is left out, which the tables
+tell, unless `truth.cameras` has its camera or `keyframes_at_truth` is set.
+
 A missing file or folder stops the run before it starts (a dry run, `-n`, looks for `video` only). With `--keep-going`
 its sequence fails at once and the others are finished, as with whatever else may go wrong in a sequence; the tables
 name it with the reason, and the exit status is not 0.
@@ -120,7 +129,7 @@ _KEYS = {
     "sequences.<name>.object": "false: no object is looked for, the sequence only takes part in the depth experiment "
     "(default true)",
     "sequences.<name>.truth.masks": "folder of masks named like the frames (white: object), to measure against; "
-    "their frames become keyframes",
+    "results do not depend on them, nor on what else is given as truth",
     "sequences.<name>.truth.cameras": "reference cameras, to measure against",
     "sequences.<name>.truth.mesh": "reference mesh, in the frame of the reference cameras, which it needs",
     "sequences.<name>.truth.depth": "folder of true depth images, `NAME.depth.png` or `NNNNN-depth.png`; "
@@ -132,6 +141,9 @@ _KEYS = {
     "units of the true cameras; null: both images are of one camera",
     "sequences.<name>.settings": "its own values of parameters, by section, in place of those of the whole run: "
     "`{depth: {photometric_weight: 10}}`",
+    "keyframes_at_truth": "true: frames with a true mask are working frames and keyframes, so that the masks of every "
+    "method are scored at all of them, which makes results depend on the truth; for benchmarks. A sequence's own "
+    "`keyframes_at_truth` goes before it (default false)",
     "skip_absent": "go on without the sequences whose source is absent; they are named at the start",
     "methods": "how the object is made, each with masks and figures of its own, and a mesh but for two: `fused_sdf` "
     "(the views weighed by trust), `deformed_sdf` (its zero level moved onto surface points), `volumetric_gc` (voxels "

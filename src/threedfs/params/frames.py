@@ -15,7 +15,7 @@ class FramesParams:
         960, "longer side of the working frames; smaller sources keep their size", unit="pixel", minimum=64
     )
     max_frames: int = parameter(
-        150, "most frames taken at uniform steps; frames with a true mask are taken as well", minimum=2
+        150, "most frames taken at uniform steps; with `keyframes_at_truth`, those with a true mask as well", minimum=2
     )
     min_frames: int = parameter(8, "fewest usable frames to go on with", minimum=2)
     blank_contrast: float = parameter(

@@ -22,7 +22,9 @@ class KeyframesParams:
     )
     new_keyframe_score: float = parameter(1.0, "score above which a viewing sector ends", exclusive_minimum=0.0)
     max_keyframes: int = parameter(
-        24, "number of keyframes aimed at; frames with a true mask are always kept and count", minimum=2
+        24,
+        "number of keyframes aimed at; with `keyframes_at_truth`, frames with a true mask are kept and count",
+        minimum=2,
     )
     max_gap: float = parameter(
         30.0,

@@ -14,8 +14,10 @@ from threedfs.params.rendered import bring_render, find_films
 
 SEQUENCE_FILES = ("source", "cameras", "calibration", "truth_masks", "truth_cameras", "truth_mesh", "truth_depth")
 """What a sequence's entry names: files and folders that must be there."""
+_FILES = (*SEQUENCE_FILES, "keyframe_masks")
+"""With those of them that a sequence may have in two roles."""
 
-RUN_FILES = {"README.md", "benchmarks", "logs", "metrics.csv", "plots", "tables"}
+RUN_FILES = {"README.md", "benchmarks", "index.html", "logs", "metrics.csv", "plots", "tables"}
 
 _DEPTH_SCALE = 1000.0  # levels of a true depth image in a metre: millimetres
 
@@ -69,7 +71,8 @@ def list_sequences(
     Returns
     -------
     dict of str to dict
-        `SEQUENCE_FILES`: paths or None; dataset: str; intrinsics: list of float or None; object: bool; depth_scale:
+        `SEQUENCE_FILES`: paths or None; keyframe_masks: the true masks, if their frames are to be keyframes
+        (`keyframes_at_truth`), or None; dataset: str; intrinsics: list of float or None; object: bool; depth_scale:
         float; depth_camera: dict or None; settings: dict of sections of the configuration, its own
         values; rendered: the take that is filmed for the sequence, or None. The paths of a
         rendered sequence are results of the run.
@@ -99,7 +102,18 @@ def list_sequences(
     sequences = sequences or {"sample": _sample(home)}
     if config["skip_absent"]:
         sequences = _skip_absent(sequences, note)
-    return {name: {**entry, "dataset": entry["dataset"] or config["dataset"]} for name, entry in sequences.items()}
+    return {name: _fill_in(entry, config) for name, entry in sequences.items()}
+
+
+def _fill_in(entry: Mapping[str, Any], config: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a sequence's entry with what holds for the whole run where it does not speak for itself."""
+    own = entry["keyframes_at_truth"]
+    at_truth = config["keyframes_at_truth"] if own is None else own
+    return {
+        **entry,
+        "dataset": entry["dataset"] or config["dataset"],
+        "keyframe_masks": entry["truth_masks"] if at_truth else None,
+    }
 
 
 def set_aside_missing(sequences: Mapping[str, Mapping[str, Any]]) -> tuple[dict[str, dict[str, Any]], dict[str, str]]:
@@ -123,7 +137,7 @@ def set_aside_missing(sequences: Mapping[str, Mapping[str, Any]]) -> tuple[dict[
             if entry["rendered"] is None and entry[key] is not None and not os.path.exists(entry[key]):
                 where = f"sequences.{name}.{key.replace('truth_', 'truth.')}"
                 missing.setdefault(name, f"{where}: expected a file or folder, found no {entry[key]} in {os.getcwd()}.")
-    emptied = {name: {**sequences[name], **dict.fromkeys(SEQUENCE_FILES)} for name in missing}
+    emptied = {name: {**sequences[name], **dict.fromkeys(_FILES)} for name in missing}
     return {name: dict(entry) for name, entry in {**sequences, **emptied}.items()}, missing
 
 
@@ -180,6 +194,7 @@ def _sample(home: Path) -> dict[str, Any]:
         {
             "source": str(folder / "video.mp4"),
             "truth": {name: str(folder / file) for name, file in truth.items()},
+            "keyframes_at_truth": True,  # its figures are over all of its masks, whatever is configured
         }
     )
 
@@ -188,6 +203,7 @@ def _flatten(entry: Mapping[str, Any]) -> dict[str, Any]:
     truth = {f"truth_{key}": value for key, value in (entry.get("truth") or {}).items()}
     return {key: {**entry, **truth}.get(key) for key in SEQUENCE_FILES} | {
         "dataset": entry.get("dataset"),
+        "keyframes_at_truth": entry.get("keyframes_at_truth"),
         "rendered": entry.get("rendered"),
         "intrinsics": entry.get("intrinsics"),
         "object": entry.get("object", True),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+import math
 
 import cv2
 import numpy as np
@@ -10,6 +11,8 @@ import numpy as np
 from threedfs.types import Keyframe
 
 _GREEN = (0, 255, 0)
+_SMALLEST = 80
+"""Pixels along the longer side, below which no picture is worth a look."""
 
 
 def outline_mask(image: np.ndarray, mask: np.ndarray) -> np.ndarray:
@@ -31,8 +34,28 @@ def color_normals(normals: np.ndarray) -> np.ndarray:
     return (np.nan_to_num(normals * [0.5, 0.5, -0.5] + 0.5) * 255).clip(0, 255).astype(np.uint8)
 
 
-def embed_image(image: np.ndarray, longest: int, quality: int = 80) -> str:
-    """Return an RGB image (H, W, 3) uint8, at most `longest` pixels long, as the address of an image in a page."""
+def embed_image(image: np.ndarray, longest: int, quality: int = 80, most: float = math.inf) -> str:
+    """Return an RGB image (H, W, 3) uint8 as the address of an image in a page.
+
+    Parameters
+    ----------
+    image : (H, W, 3) uint8
+    longest : int
+        Pixels along its longer side, at most.
+    quality : int
+        Of the JPEG.
+    most : float
+        Characters that the address may have: a larger one is drawn smaller, down to `_SMALLEST` pixels.
+    """
+    address = _encode(image, longest, quality)
+    while len(address) > most and longest > _SMALLEST:
+        # an image of half the pixels takes more than half the bytes, hence the factor
+        longest = max(_SMALLEST, int(0.9 * longest * math.sqrt(most / len(address))))
+        address = _encode(image, longest, quality)
+    return address
+
+
+def _encode(image: np.ndarray, longest: int, quality: int) -> str:
     scale = min(1.0, longest / max(image.shape[:2]))
     size = (max(1, round(scale * image.shape[1])), max(1, round(scale * image.shape[0])))
     small = cv2.resize(image, size, interpolation=cv2.INTER_AREA) if scale < 1 else image

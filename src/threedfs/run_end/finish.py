@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from threedfs.errors import UserError
 from threedfs.evaluate.costs import cost_figures
 from threedfs.evaluate.experiment_tables import experiment_tables, group_experiments
 from threedfs.evaluate.plots import plot_depth_experiment, plot_overlap
@@ -24,9 +25,17 @@ from threedfs.evaluate.tables import (
 from threedfs.evaluate.variant_tables import variant_tables
 from threedfs.io.atomic import atomic
 from threedfs.io.metrics import read_metrics, write_metrics
+from threedfs.params.configuration import METHODS
 from threedfs.params.schema import STAGES
+from threedfs.run_end.index import write_index_page
 from threedfs.run_end.logs import find_failures, read_actions
+from threedfs.run_end.summary import read_summary
+from threedfs.store.files import remove
 
+_SCORING = {"evaluate", "evaluate_reconstruction", "photographs", "depth_trial", "depth_experiment", "collect"}
+"""Stages that compare and make nothing."""
+_SCORES = ("12_evaluate/**/*.csv", "12_depth_experiment/metrics.csv")
+"""Tables of figures of a sequence."""
 _WATCHED = ("02_poses/poses.json", "11_object/*/mesh.ply", "12_evaluate/**/*.csv", "**/logs/**/*.log")
 """Files of a sequence that its report is older than, if it is out of date."""
 
@@ -78,10 +87,11 @@ class Run:
 def finish_run(run: Run, unfinished: Collection[str] = ()) -> str:
     """Write the tables and plots of the sequences that have their figures; return what the run says at its end.
 
-    Below `results`: `tables/*.md`, `tables/metrics.csv` (the figures in them), `plots/*.svg`; and what differs from run
-    to run, `benchmarks/costs.csv` and `costs.md`. Costs are those of the work when it was done, also for what was then
-    taken from the store. If a job failed, the tables name it, and `results/metrics.csv`, which does not hold all that
-    the run was to measure, is taken away: the next run makes it.
+    Below `results`: `metrics.csv` (all figures), `tables/*.md`, `plots/*.svg`; and what differs from run to run,
+    `benchmarks/costs.csv` and `costs.md`. They hold the sequences of the run, and after them those of earlier runs
+    whose figures still lie in their folders. Costs are those of the work when it was done, also for what was then
+    taken from the store. If a job failed, the tables name it. `tables/metrics.csv`, which rule collect makes, is then
+    taken away: the next run collects anew.
 
     Parameters
     ----------
@@ -95,61 +105,121 @@ def finish_run(run: Run, unfinished: Collection[str] = ()) -> str:
         Only the failures, if the run was not to collect figures.
     """
     failures = find_failures(run.results, run.started)
-    collected = run.results / "metrics.csv"
+    collected = run.results / "tables" / "metrics.csv"
     refused = "".join(
         f"threedfs: {failure.stage} of {' '.join(filter(None, (failure.sequence, failure.item)))}: {failure.sentence}\n"
         for failure in failures
     )
+    _remove_stale(run, unfinished, {failure.sequence for failure in failures})
     if str(collected) in unfinished:
         collected.unlink(missing_ok=True)
     elif not collected.is_file() or collected.stat().st_mtime < run.started:
         return refused
-    current = [path for path in run.tables if path.is_file() and str(path) not in unfinished]
-    metrics = [metric for path in current for metric in read_metrics(path)]
+    own, others = _read_own(run, unfinished), _read_others(run)
+    datasets = {**run.datasets, **{row.sequence: row.dataset for row in others}}
     costs = [
         Metric(cost.name, cost.value, cost.unit, dataset, sequence)
-        for sequence, dataset in run.datasets.items()
+        for sequence, dataset in datasets.items()
         for cost in cost_figures(read_actions(run.results / sequence, run.store))
     ]
     write_metrics(run.results / "benchmarks" / "costs.csv", costs)
-    write_metrics(run.results / "tables" / "metrics.csv", metrics)
-    scores = Scores((*metrics, *costs), run.datasets, run.methods, tuple(failures), run.seed)
+    write_metrics(run.results / "metrics.csv", [*own, *others])
+    used = {row.method for row in others} - {*run.methods}
+    methods = (*run.methods, *(method for method in METHODS if method in used))
+    scores = Scores((*own, *others, *costs), datasets, methods, tuple(failures), run.seed)
     _write_all(run.results / "tables", ".md", _lay_out(scores, TABLES))
     by_stage = {"costs": lambda scores, dataset: cost_tables(scores, dataset, STAGES)}
     _write_all(run.results / "benchmarks", ".md", _lay_out(scores, by_stage))
     _write_all(run.results / "plots", ".svg", _draw_plots(scores))
-    return f"\n{_summarise(scores)}\n\nTables and plots: {run.results}/tables, {run.results}/plots\n{refused}"
+    said = tuple(row for row in (*own, *costs) if row.sequence in run.datasets)
+    told = _summarise(Scores(said, run.datasets, run.methods, tuple(failures), run.seed))
+    return f"\n{told}\n\nTables and plots: {run.results}/tables, {run.results}/plots\n{refused}"
 
 
-def report_run(run: Run, note: Callable[[str], object]) -> None:
-    """Write `report.html` into the folder of each sequence whose results are newer, or that failed.
+def _read_own(run: Run, unfinished: Collection[str]) -> list[Metric]:
+    """Read the figures of the run's sequences, without those that are out of date."""
+    current = [path for path in run.tables if path.is_file() and str(path) not in unfinished]
+    return [metric for path in current for metric in read_metrics(path)]
+
+
+def _read_others(run: Run) -> list[Metric]:
+    """Read the figures of sequences that are not in the run, in the order of their names.
+
+    Tables that cannot be read are left out.
+    """
+    metrics = []
+    for folder in sorted(path for path in run.results.glob("*") if path.is_dir() and path.name not in run.datasets):
+        for path in (path for pattern in _SCORES for path in sorted(folder.glob(pattern))):
+            try:
+                metrics += [metric for metric in read_metrics(path) if metric.sequence == folder.name]
+            except UserError:  # of another version, or damaged: its sequence is not in this run, which goes on
+                continue
+    return metrics
+
+
+def _remove_stale(run: Run, unfinished: Collection[str], failed: Collection[str]) -> None:
+    """Remove what would pass for results of now: scores of sequences that failed, textures of a mesh before the last.
+
+    The next run that wants them takes them from the store, or makes them.
+    """
+    for path in run.tables:
+        if str(path) in unfinished and path.relative_to(run.results).parts[0] in failed:
+            path.unlink(missing_ok=True)
+    for mesh in (mesh for name in run.datasets for mesh in (run.results / name).glob("11_object/*/mesh.ply")):
+        made = mesh.stat().st_mtime_ns
+        if made < run.started * 1e9:  # in a copy of results, times say nothing
+            continue
+        painted = mesh.parent / "textured"
+        times = [path.stat().st_mtime_ns for path in painted.rglob("*")]
+        if times and max(times) < made:
+            remove(painted)
+            remove(mesh.parent / "mesh.glb")
+
+
+def report_run(run: Run, unfinished: Collection[str], note: Callable[[str], object]) -> None:
+    """Write `report.html` into the folder of each sequence that changed or failed, and `index.html` over all of them.
 
     Parameters
     ----------
     run : Run
+    unfinished : collection of str
+        As `finish_run` takes them.
     note : callable
         Takes a sentence for a report that could not be made.
     """
     failures = find_failures(run.results, run.started)
     failed = {failure.sequence for failure in failures}
-    due = [run.results / name for name in run.datasets if name in failed or _is_newer(run.results / name)]
-    if not due:
-        return
-    # what draws pictures takes a second to import, which a run with nothing to do is spared
-    from threedfs.run_end.report import Context, write_reports
+    due = [run.results / name for name in run.datasets if name in failed or _is_due(run.results / name, run.methods)]
+    own = _read_own(run, unfinished)
 
-    metrics = [metric for path in run.tables if path.is_file() for metric in read_metrics(path)]
+    def describe(sequence: str):
+        from threedfs.run_end.report import Context
 
-    def describe(sequence: str) -> Context:
+        stages = {failure.stage for failure in failures if failure.sequence == sequence}
         return Context(
             run.store,
-            [metric for metric in metrics if metric.sequence == sequence],
+            [metric for metric in own if metric.sequence == sequence],
             [f"{failure.stage}: {failure.sentence}" for failure in failures if failure.sequence == sequence],
+            run.methods,
+            unfinished,
+            stages <= _SCORING,
             run.changes.get(sequence, {}),
             run.versions,
         )
 
-    write_reports(due, describe, note)
+    if due:
+        # what draws pictures takes a second to import, which a run with nothing to do is spared
+        from threedfs.run_end.report import write_reports
+
+        write_reports(due, describe, note)
+    write_index_page(run.results, run.datasets, [*own, *_read_others(run)])
+
+
+def _is_due(folder: Path, methods: Sequence[str]) -> bool:
+    """Say whether a sequence needs another report: it has newer results, or methods of now are others."""
+    summary = read_summary(folder)
+    known = summary is not None and summary.methods == tuple(methods)
+    return _is_newer(folder) or ((folder / "report.html").is_file() and not known)
 
 
 def _is_newer(folder: Path) -> bool:

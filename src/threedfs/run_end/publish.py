@@ -27,7 +27,7 @@ _NEW = f"# Results\n\n{BEGIN}\n{END}\n"
 
 
 def publish(results: Path, docs: Path) -> None:
-    """Write `results.csv`, `results.md` and `plots/*.svg` from the tables and plots of the last run.
+    """Write `results.csv`, `results.md` and `plots/*.svg` from the tables and plots of a folder of results.
 
     Of `results.md` only the part between the two marks is written; what stands around it is kept.
 
@@ -40,7 +40,7 @@ def publish(results: Path, docs: Path) -> None:
     UserError
         If no run has left tables, or `results.md` has lost its marks.
     """
-    figures = results / "tables" / "metrics.csv"
+    figures = results / "metrics.csv"
     if not figures.is_file():
         raise UserError(f"{figures}: expected the figures of a run, found none; run snakemake first.")
     page = docs / "results.md"

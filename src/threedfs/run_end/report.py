@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -24,16 +24,24 @@ from threedfs.io.poses import Poses, read_poses
 from threedfs.io.textured_meshes import read_textured_obj
 from threedfs.io.volumes import read_silhouettes, read_support
 from threedfs.report.camera_path import draw_path, widest_gap
-from threedfs.report.findings import Facts, Finding, judge
+from threedfs.report.findings import Facts, Finding, judge, sum_up
 from threedfs.report.page import KeyframePictures, Report, write_page
 from threedfs.report.pictures import color_depth, color_normals, embed_image, outline_mask
 from threedfs.report.viewer import embed_viewer
 from threedfs.run_end.logs import read_actions
+from threedfs.run_end.summary import Summary, write_summary
 from threedfs.texture.photograph import photograph_texture, photograph_vertices
-from threedfs.types import Keyframe, Support
+from threedfs.texture.textured import TexturedMesh
+from threedfs.types import Keyframe, Mesh, Support
 
 _LONGEST, _STILL = 420, 900
 """Pixels along the longer side of a keyframe's pictures, and of the mesh's."""
+_SMALL = 240
+"""The same of the picture on the page over all sequences."""
+_PICTURES = 5_000_000
+"""Characters that the pictures of all keyframes may take in the page: many keyframes have smaller ones."""
+_KINDS = 4
+"""Pictures of a keyframe."""
 _AGREED = 0.5
 """Share of the photographs at a vertex that must agree on it."""
 _PIXELS = ("gc_2d3d_pixel", "gc_2d")
@@ -61,6 +69,12 @@ class Context:
         Of the sequence.
     failures : sequence of str
         Sentences of its jobs that failed.
+    methods : tuple of str, optional
+        Those of the run; what others left in the folder is not shown. All, if not given.
+    stale : collection of str
+        Files and folders that the run should have made anew and did not.
+    scored_only : bool
+        Whether nothing but scoring failed, so that mesh and masks are those of the run.
     settings : mapping of str to str
         Those that differ from the defaults.
     versions : mapping of str to str
@@ -69,25 +83,32 @@ class Context:
     store: Path
     metrics: Sequence[Metric] = ()
     failures: Sequence[str] = ()
+    methods: tuple[str, ...] | None = None
+    stale: Collection[str] = ()
+    scored_only: bool = False
     settings: Mapping[str, str] = field(default_factory=dict)
     versions: Mapping[str, str] = field(default_factory=dict)
 
 
 def write_report(folder: Path, context: Context) -> Path:
-    """Write report.html into the folder of a sequence's results; what is not there yet is left out.
+    """Write report.html into the folder of a sequence's results, and its summary; what is not there yet is left out.
 
-    After a failure mesh and masks are left out too: they may be of an earlier run.
+    After a failure mesh and masks are left out too, unless only scoring failed: they may be of an earlier run.
     """
-    known = _gather(folder)
-    failed = bool(context.failures)
+    known = _gather(folder, context.methods, context.stale)
+    failed = bool(context.failures) and not context.scored_only
+    findings = () if failed else tuple(_judge(folder, known))
+    shown = None if failed else _find_mesh(folder, known)
     report = Report(
         folder.name,
         failures=tuple(context.failures),
-        findings=() if failed else tuple(_judge(folder, known)),
-        viewer="" if failed else _show_mesh(folder, known),
+        findings=findings,
+        viewer=embed_viewer(shown.surface, known.place.plane, known.poses.views, embed_image(shown.still, _STILL))
+        if shown
+        else "",
         path=draw_path(known.poses.views, known.keyframes, known.place) if known.place else "",
-        keyframes=tuple(_picture_keyframes(folder, known, with_masks=not failed)),
-        files={} if failed else _find_files(folder),
+        keyframes=tuple(_picture_keyframes(folder, known, context, with_masks=not failed)),
+        files={} if failed else _find_files(folder, context.methods),
         left_out=known.poses.unposed if known.poses else (),
         scores=_tabulate(context.metrics),
         costs=tuple(_find_costs(folder, context.store)),
@@ -96,7 +117,21 @@ def write_report(folder: Path, context: Context) -> Path:
     )
     with atomic(folder / "report.html") as temporary:
         temporary.write_text(write_page(report), encoding="utf-8")
+    summary = Summary(
+        context.methods or (),
+        (known.method or "") if shown else "",
+        sum_up(list(findings)) if findings else "",
+        all(finding.good for finding in findings) if findings else None,
+        tuple(context.failures),
+        embed_image(shown.still, _SMALL, 75) if shown else _first_picture(report),
+    )
+    write_summary(folder, summary)
     return folder / "report.html"
+
+
+def _first_picture(report: Report) -> str:
+    """Return the smallest stand-in for a mesh: the first picture of the first keyframe, empty without any."""
+    return next((picture for each in report.keyframes for picture in each.pictures.values()), "")
 
 
 def write_reports(folders: Sequence[Path], contexts: Callable[[str], Context], note: Callable[[str], object]) -> None:
@@ -120,11 +155,13 @@ def write_reports(folders: Sequence[Path], contexts: Callable[[str], Context], n
             bare = Report(folder.name, failures=tuple(context.failures), settings=context.settings)
             with atomic(folder / "report.html") as temporary:
                 temporary.write_text(write_page(bare), encoding="utf-8")
+            failed = "its report could not be made"
+            write_summary(folder, Summary(context.methods or (), verdict=failed, failures=tuple(context.failures)))
 
 
-def find_out(folder: Path) -> list[Finding]:
+def find_out(folder: Path, methods: Collection[str] | None = None) -> list[Finding]:
     """Return what is to be known of a sequence's results before trusting them; nothing without a mesh."""
-    return _judge(folder, _gather(folder))
+    return _judge(folder, _gather(folder, methods))
 
 
 def _judge(folder: Path, known: _Known) -> list[Finding]:
@@ -148,15 +185,27 @@ def _judge(folder: Path, known: _Known) -> list[Finding]:
     )
 
 
-def find_method(folder: Path) -> str | None:
-    """Return the method whose mesh of a sequence is the one to look at, None without any mesh."""
-    return next((name for name in _MESHES if (folder / "11_object" / name / "mesh.ply").is_file()), None)
+def find_method(folder: Path, methods: Collection[str] | None = None) -> str | None:
+    """Return the method whose mesh of a sequence is the one to look at, None without any mesh.
+
+    Parameters
+    ----------
+    folder : Path
+        Of its results.
+    methods : collection of str, optional
+        Those of the run; all, if not given.
+    """
+    return next((name for name in _of(_MESHES, methods) if (folder / "11_object" / name / "mesh.ply").is_file()), None)
 
 
-def find_masks(folder: Path) -> Path | None:
-    """Return the folder of a sequence's masks to look at, None without any."""
-    folders = (folder / "11_object" / name / "masks" for name in _MASKS)
+def find_masks(folder: Path, methods: Collection[str] | None = None) -> Path | None:
+    """Return the folder of a sequence's masks to look at, None without any; parameters as `find_method`."""
+    folders = (folder / "11_object" / name / "masks" for name in _of(_MASKS, methods))
     return next((path for path in folders if path.is_dir()), None)
+
+
+def _of(names: Sequence[str], methods: Collection[str] | None) -> list[str]:
+    return [name for name in names if methods is None or name in methods]
 
 
 @dataclass(frozen=True)
@@ -169,7 +218,7 @@ class _Known:
     method: str | None = None
 
 
-def _gather(folder: Path) -> _Known:
+def _gather(folder: Path, methods: Collection[str] | None = None, stale: Collection[str] = ()) -> _Known:
     places = {
         "poses": (folder / "02_poses/poses.json", read_poses),
         "place": (folder / "03_scene/support.json", read_support),
@@ -178,17 +227,25 @@ def _gather(folder: Path) -> _Known:
     found = {}
     for name, (path, read) in places.items():
         try:
-            found |= {name: read(path)} if path.is_file() else {}
+            found |= {name: read(path)} if path.is_file() and str(path) not in stale else {}
         except UserError:  # damaged: the run says so when it needs it
             continue
     if "poses" not in found:
         return _Known()
-    return _Known(**found, method=find_method(folder))
+    return _Known(**found, method=find_method(folder, methods))
 
 
-def _show_mesh(folder: Path, known: _Known) -> str:
+@dataclass(frozen=True)
+class _Shown:
+    """The mesh on the page, and its picture (H, W, 3) uint8 from the first keyframe."""
+
+    surface: TexturedMesh | Mesh
+    still: np.ndarray
+
+
+def _find_mesh(folder: Path, known: _Known) -> _Shown | None:
     if known.place is None or known.method is None or not known.keyframes:
-        return ""
+        return None
     own = folder / "11_object" / known.method
     if (own / "textured/mesh.obj").is_file():
         surface = read_textured_obj(own / "textured/mesh.obj")
@@ -197,33 +254,33 @@ def _show_mesh(folder: Path, known: _Known) -> str:
         surface, colors = read_colored_mesh(own / "mesh.ply")
         plain = np.full((len(surface.vertices), 3), 180.0)
         photographer = photograph_vertices(surface, plain if colors is None else colors.astype(np.float64))
-    image, shown = photographer.take(next(iter(known.keyframes.values())).view)
-    still = np.where(shown[..., None], image.clip(0, 255), 244).astype(np.uint8)
-    return embed_viewer(surface, known.place.plane, known.poses.views, embed_image(still, _STILL))
+    image, seen = photographer.take(next(iter(known.keyframes.values())).view)
+    return _Shown(surface, np.where(seen[..., None], image.clip(0, 255), 244).astype(np.uint8))
 
 
-def _picture_keyframes(folder: Path, known: _Known, with_masks: bool) -> Iterator[KeyframePictures]:
+def _picture_keyframes(folder: Path, known: _Known, context: Context, with_masks: bool) -> Iterator[KeyframePictures]:
     crops = folder / "04_crops/crops.zarr.zip"
-    if not crops.is_file():
+    if not crops.is_file() or str(crops) in context.stale:
         return
-    store = read_crops(crops)
-    drawn = (folder / "11_object" / method / "silhouettes.zarr.zip" for method in _MASKS)
+    store, most = read_crops(crops), _PICTURES / (_KINDS * max(1, len(known.keyframes)))
+    with_depth = str(folder / "06_depth") not in context.stale
+    drawn = (folder / "11_object" / name / "silhouettes.zarr.zip" for name in _of(_MASKS, context.methods))
     masks = next((read_silhouettes(path) for path in drawn if with_masks and path.is_file()), {})
     for name, keyframe in known.keyframes.items():
         image, depth = store.image(name), folder / f"06_depth/{name}.zarr.zip"
         pictures = {"photograph": image}
         if name in masks and masks[name].shape == image.shape[:2]:
             pictures = {"mask": outline_mask(image, masks[name])} | pictures
-        if depth.is_file():
+        if with_depth and depth.is_file():
             seen = read_depth_map(depth).depth
             pictures["depth"] = color_depth(seen, keyframe)
             pictures["normals"] = color_normals(normals_from_depth(keyframe.view.camera, seen))
-        yield KeyframePictures(name, {kind: embed_image(each, _LONGEST, 75) for kind, each in pictures.items()})
+        yield KeyframePictures(name, {kind: embed_image(each, _LONGEST, 75, most) for kind, each in pictures.items()})
 
 
-def _find_files(folder: Path) -> dict[str, str]:
+def _find_files(folder: Path, methods: Collection[str] | None) -> dict[str, str]:
     """Return what the run made, what it is by its place below the folder."""
-    method, masks = find_method(folder), find_masks(folder)
+    method, masks = find_method(folder, methods), find_masks(folder, methods)
     places = {what: folder / "11_object" / method / name for what, name in _FILES.items()} if method else {}
     if masks:
         places["a mask of the object in every keyframe"] = masks

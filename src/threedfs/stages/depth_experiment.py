@@ -36,7 +36,7 @@ def run(
     if not trials:
         raise UserError(
             "expected true depth images (truth.depth) of keyframes, found none for any keyframe; name them "
-            "NAME.depth.png after frames that become keyframes: those with a true mask do."
+            "NAME.depth.png after frames that become keyframes: with keyframes_at_truth, those with a true mask do."
         )
     read = {path.name.removesuffix(".zarr.zip"): read_depth_trial(path) for path in trials}
     methods = next(iter(read.values())).methods

@@ -15,6 +15,7 @@ from threedfs.evaluate.mesh_error import measure_mesh
 from threedfs.evaluate.scores import Metric
 from threedfs.evaluate.true_cameras import TrueCameras, relate_cameras
 from threedfs.frames.masks import find_masks
+from threedfs.frames.picture import name_video_frame
 from threedfs.io.frames import FrameStore, read_frames
 from threedfs.io.given_cameras import read_given_cameras
 from threedfs.io.images import read_mask
@@ -26,7 +27,10 @@ from threedfs.io.volumes import read_silhouettes
 from threedfs.job import Job
 from threedfs.object.silhouettes import draw_source_silhouette
 from threedfs.params.evaluate import EvaluateParams
-from threedfs.types import Keyframe, Mesh
+from threedfs.types import Keyframe, Mesh, View
+
+_NAMED = 8
+"""Masks that are left out, named one by one."""
 
 
 def run(
@@ -66,7 +70,7 @@ def run(
     if truth is not None and surface is not None:
         aligned = Mesh(truth.from_scene.apply(surface.vertices), surface.faces)
     if masks_truth is not None:
-        figures += _score_masks(masks_truth, masks, aligned, truth, selected, store, job)
+        figures += _score_masks(masks_truth, masks, surface, aligned, truth, selected, solved, store, job)
     figures.append(Figure("masks_cut_off", _count_cut_off(silhouettes, crops, solved, job), "masks"))
     if mesh_truth is not None and aligned is not None:
         exact = read_mesh(mesh_truth)
@@ -98,30 +102,68 @@ def _count_cut_off(silhouettes: Path, crops: Path, solved: Poses, job: Job) -> i
 def _score_masks(
     folder: Path,
     masks: Path,
+    surface: Mesh | None,
     aligned: Mesh | None,
     truth: TrueCameras | None,
     selected: Mapping[str, Keyframe],
+    solved: Poses,
     store: FrameStore,
     job: Job,
 ) -> list[Figure]:
+    """Score masks of keyframes, and the mesh as it is drawn at other true masks whose camera is known.
+
+    No truth chooses a frame, so a mask may be of any frame of the source: one that was worked on has the camera that
+    was estimated for it, one of a true camera without an image that camera. Others are left out, and counted.
+    """
     unseen = {} if truth is None else truth.unseen
-    found = find_masks(folder, [*selected, *store.names, *unseen], numbered=store.ordered)
+    files = _list_masks(folder, [*selected, *store.names, *unseen], store)
+    posed = {view.name: view for view in solved.views}
+    at_keyframe = [name for name in files if name in selected]
+    at_frame = [name for name in files if name in posed and name not in selected and surface is not None]
+    at_unseen = [name for name in files if name in unseen and aligned is not None]
     overlap = {
-        name: intersection_over_union(read_mask(masks / f"{name}.png"), read_mask(file), str(file))
-        for name, file in found.items()
-        if name in selected
+        name: intersection_over_union(read_mask(masks / f"{name}.png"), read_mask(files[name]), str(files[name]))
+        for name in at_keyframe
     }
-    left_out = sorted(name for name in found if name not in selected and name not in unseen)
+    without_keyframe = [name for name in files if name not in selected and name not in unseen]
+    left_out = [name for name in files if name not in {*at_keyframe, *at_frame, *at_unseen}]
     if left_out:
-        job.progress.note(f"no score for frames with a true mask that are no keyframes: {', '.join(left_out)}")
-    figures = [*mask_figures(overlap), Figure("masks_without_keyframe", len(left_out), "masks")]
-    if aligned is None:
-        return figures
-    overlap_unseen = {}
-    for name in job.progress.track([name for name in found if name in unseen], "unseen view"):
-        view, distortion = unseen[name]
-        exact = read_mask(found[name])
-        check_mask_size(exact, view.camera.shape, str(found[name]))
-        drawn = draw_source_silhouette(aligned, view, distortion, view.camera.shape)
-        overlap_unseen[name] = intersection_over_union(drawn, exact)
-    return figures + mask_figures(overlap_unseen, "iou_unseen")
+        why = "no camera is known there" if surface is not None else "without a mesh, only keyframes have masks"
+        job.progress.note(
+            f"{len(left_out)} of {len(files)} true masks are scored nowhere: {_name_some(sorted(left_out))}; {why}; "
+            "give masks of frames that are worked on, their truth.cameras, or set keyframes_at_truth"
+        )
+    figures = [*mask_figures(overlap), Figure("masks_without_keyframe", len(without_keyframe), "masks")]
+    if left_out:
+        figures.append(Figure("masks_left_out", len(left_out), "masks"))
+    drawn = {name: (surface, posed[name], solved.distortion, store.source_shape) for name in at_frame}
+    figures += mask_figures(_compare_drawn(drawn, files, job), "iou_frames")
+    drawn = {name: (aligned, *unseen[name], unseen[name][0].camera.shape) for name in at_unseen}
+    return figures + mask_figures(_compare_drawn(drawn, files, job), "iou_unseen")
+
+
+def _list_masks(folder: Path, known: Sequence[str], store: FrameStore) -> dict[str, Path]:
+    """Return the mask files by frame: first those of known ones, then those of no known frame, by their own names."""
+    numbers = [path.stem for path in sorted(folder.glob("*.png")) if path.stem.isascii() and path.stem.isdigit()]
+    others = [name_video_frame(int(number)) for number in numbers] if store.ordered else []
+    found = find_masks(folder, [*known, *others], numbered=store.ordered)
+    taken = {path.name for path in found.values()}
+    strange = [path for path in sorted(folder.glob("[!.]*.png")) if path.name not in taken]
+    return found | {path.stem: path for path in strange}
+
+
+def _compare_drawn(
+    drawn: Mapping[str, tuple[Mesh, View, tuple[float, float], tuple[int, int]]], files: Mapping[str, Path], job: Job
+) -> dict[str, float]:
+    """Draw a mesh in views, each with its distortion and shape, and compare it with the true masks of their names."""
+    overlap = {}
+    for name in job.progress.track([*drawn], "view without a mask"):
+        exact, (mesh, view, distortion, shape) = read_mask(files[name]), drawn[name]
+        check_mask_size(exact, shape, str(files[name]))
+        overlap[name] = intersection_over_union(draw_source_silhouette(mesh, view, distortion, shape), exact)
+    return overlap
+
+
+def _name_some(names: Sequence[str]) -> str:
+    """Return names in one line, the first few of many."""
+    return ", ".join(names[:_NAMED]) + (f" and {len(names) - _NAMED} more" if len(names) > _NAMED else "")

@@ -38,7 +38,7 @@ def run(
     """Read frames, poses and points; write keyframes.json.
 
     Differs from the paper: LSD-SLAM's criterion (3.1) only parts the path into sectors; the sharpest frame of each
-    is its keyframe, and frames with a true mask always are.
+    is its keyframe, and frames of the given masks always are.
 
     Raises
     ------
