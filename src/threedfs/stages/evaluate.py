@@ -15,8 +15,10 @@ from threedfs.evaluate.mesh_error import measure_mesh
 from threedfs.evaluate.scores import Metric
 from threedfs.evaluate.true_cameras import TrueCameras, relate_cameras
 from threedfs.frames.masks import find_masks
+from threedfs.frames.true_masks import read_true_mask
 from threedfs.io.frames import FrameStore, read_frames
 from threedfs.io.given_cameras import read_given_cameras
+from threedfs.io.given_meshes import read_given_mesh
 from threedfs.io.images import read_mask
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
@@ -69,7 +71,7 @@ def run(
         figures += _score_masks(masks_truth, masks, aligned, truth, selected, store, job)
     figures.append(Figure("masks_cut_off", _count_cut_off(silhouettes, crops, solved, job), "masks"))
     if mesh_truth is not None and aligned is not None:
-        exact = read_mesh(mesh_truth)
+        exact = read_given_mesh(mesh_truth)
         figures += mesh_figures(measure_mesh(aligned, exact, params.mesh_thresholds, params.surface_samples, generator))
     if surface is not None:
         figures += soundness_figures(surface)
@@ -106,21 +108,25 @@ def _score_masks(
 ) -> list[Figure]:
     unseen = {} if truth is None else truth.unseen
     found = find_masks(folder, [*selected, *store.names, *unseen], numbered=store.ordered)
-    overlap = {
-        name: intersection_over_union(read_mask(masks / f"{name}.png"), read_mask(file), str(file))
-        for name, file in found.items()
-        if name in selected
-    }
+    overlap, inverted = {}, []
+    for name in (name for name in found if name in selected):
+        mine, exact = read_mask(masks / f"{name}.png"), read_true_mask(found[name])
+        overlap[name] = intersection_over_union(mine, exact, str(found[name]))
+        if mine.any() and intersection_over_union(mine, ~exact) > overlap[name]:
+            inverted.append(name)
     left_out = sorted(name for name in found if name not in selected and name not in unseen)
     if left_out:
         job.progress.note(f"no score for frames with a true mask that are no keyframes: {', '.join(left_out)}")
     figures = [*mask_figures(overlap), Figure("masks_without_keyframe", len(left_out), "masks")]
+    if inverted:
+        job.progress.note(f"true masks agree better when inverted: {', '.join(inverted)}; is white the object?")
+        figures.append(Figure("masks_inverted", len(inverted), "masks"))
     if aligned is None:
         return figures
     overlap_unseen = {}
     for name in job.progress.track([name for name in found if name in unseen], "unseen view"):
         view, distortion = unseen[name]
-        exact = read_mask(found[name])
+        exact = read_true_mask(found[name])
         check_mask_size(exact, view.camera.shape, str(found[name]))
         drawn = draw_source_silhouette(aligned, view, distortion, view.camera.shape)
         overlap_unseen[name] = intersection_over_union(drawn, exact)
