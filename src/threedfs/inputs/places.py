@@ -27,8 +27,8 @@ def check_places(store: Path, results: Path, names: Iterable[str] = ()) -> None:
     UserError
         If a file is where a folder is to be, a folder is read-only, or the disk is full.
     """
+    _check_folder(results, "results", "run in another folder")
     _check_folder(store, "store", "name another folder by store in the configuration")
-    _check_folder(results, "results", "run elsewhere")
     for name in names:
         _check_folder(results / name, "results", "move it away")
 
