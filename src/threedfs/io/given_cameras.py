@@ -142,7 +142,7 @@ def _read_colmap(folder: Path) -> list[GivenCamera]:
     except ValueError as fault:
         raise UserError(
             f"{folder}: expected a COLMAP model with radial distortion at most, got {fault}; "
-            "undistort the images with COLMAP and give that model."
+            "export it again, or undistort the images with COLMAP and give that model."
         ) from fault
     return [GivenCamera(Path(name).stem, None, lens, pose) for name, lens, pose in images]
 
