@@ -43,7 +43,6 @@ rule all:
 
 
 onstart:
-    refuse_missing()
     look_on_demand()
 
 

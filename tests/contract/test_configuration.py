@@ -54,6 +54,7 @@ def test_every_module_of_parameters_is_a_stage():
         "component",
         "rendered",
         "changes",
+        "command_line",
         "rules",
         "sequences",
         "smoothing",

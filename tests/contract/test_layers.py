@@ -9,7 +9,7 @@ import pytest
 
 SOURCE = Path(__file__).resolve().parents[2] / "src"
 MODULES = sorted((SOURCE / "threedfs").rglob("*.py"))
-FILE_LAYERS = {"cli", "io", "stages", "store", "params", "run_end", "synthetic"}
+FILE_LAYERS = {"cli", "inputs", "io", "stages", "store", "params", "run_end", "synthetic"}
 """Parts of the package that know files, configuration or jobs; the others know arrays."""
 FILES_MAY_BE_READ_BY = {"threedfs.frames", "threedfs.colmap"}
 """Topics that take the path of a source or of a library's own format: decoders and COLMAP."""

@@ -25,7 +25,9 @@ def decode(tmp_path, job):
 def write_masks(folder, names, shape):
     folder.mkdir()
     for name in names:
-        Image.fromarray(np.zeros(shape, np.uint8)).save(folder / f"{name}.png")
+        mask = np.zeros(shape, np.uint8)
+        mask[20:40, 30:60] = 255
+        Image.fromarray(mask).save(folder / f"{name}.png")
     return folder
 
 

@@ -76,7 +76,7 @@ def test_masks_that_cannot_be_compared_are_refused(tmp_path):
     for folder, sentence in (
         ("other", "expected masks named like those of"),
         ("small", "expected a mask of 20 x 20 pixels"),
-        ("black", "expected a white object on black, found one colour only"),
+        ("black", "expected a white object on black in at least one mask, got 1 that are black all over"),
         ("absent", "expected a folder of masks"),
     ):
         with pytest.raises(UserError, match=sentence):

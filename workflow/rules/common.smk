@@ -5,13 +5,22 @@ import sys
 
 from threedfs.densify.engine import choose_engine
 from threedfs.errors import UserError
+from threedfs.inputs.places import check_places
+from threedfs.params.command_line import read_scalars
+from threedfs.params.configuration import configuration_schema
 from threedfs.params.sequences import load_sequences
 from threedfs.store.code import digest_code, library_versions
 from threedfs.store.digests import InputDigests
 
 NOTES = sys.stderr if workflow.is_main_process else None  # jobs read the rules again
+CORES = workflow.resource_settings.cores
+if CORES is not None and CORES < 1:
+    sys.exit(f"threedfs: --cores: expected a whole number of at least 1, got {CORES}.")
 try:
+    read_scalars(config, workflow.config_settings.config, configuration_schema())
     SEQUENCES, MISSING = load_sequences(config, Path(workflow.basedir), NOTES)
+    if workflow.is_main_process:
+        check_places(Path(config["store"]), Path("results"), SEQUENCES)
 except UserError as fault:
     sys.exit(f"threedfs: {fault}")
 
@@ -21,7 +30,6 @@ TRIED = [name for name in SEQUENCES if SEQUENCES[name]["depth_experiment"]]
 # it would idle while such a job waits for both, and through half of the work on poses.
 THREADS = 2 if len(SEQUENCES) == 1 else 1
 # Keyframes that a job works on at once: on this machine its cores, shared by the sequences; on a cluster a part of a node.
-CORES = workflow.resource_settings.cores
 KEYFRAMES_AT_ONCE = 8 if CORES is None else max(1, CORES // max(1, len(SEQUENCES)))
 STORE_DIGESTS = InputDigests(Path(config["store"]) / "digests")
 

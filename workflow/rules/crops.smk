@@ -28,7 +28,7 @@ rule crops:
         code=code_of("crops"),
         settings=settings_of("crops"),
         seed=config["seed"],
-        folders=fingerprint_of("source"),
+        content=fingerprint_of("source"),
     message:
         "Cut the crops of {wildcards.sequence}."
     script:

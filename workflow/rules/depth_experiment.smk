@@ -31,7 +31,9 @@ rule depth_trial:
         seed=config["seed"],
         trials=count_trials,  # the keyframes follow from inputs: Snakemake does not watch them
         keyframes=choose_trials,
-        folders=fingerprint_of("truth_masks", "truth_cameras", "truth_depth"),
+        content=fingerprint_of(
+            "truth_masks", "truth_cameras", "truth_mesh", "truth_depth"
+        ),
         labels=lambda wildcards: {
             "depth_settings": settings_of("depth")(wildcards),
             "depth_scale": SEQUENCES[wildcards.sequence]["depth_scale"],

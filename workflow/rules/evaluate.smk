@@ -25,7 +25,7 @@ rule evaluate_reconstruction:
         code=code_of("evaluate_reconstruction"),
         settings=settings_of("evaluate_reconstruction"),
         seed=config["seed"],
-        folders=fingerprint_of("truth_cameras", "truth_depth"),
+        content=fingerprint_of("truth_cameras", "truth_mesh", "truth_depth"),
         labels=lambda wildcards: {
             "dataset": SEQUENCES[wildcards.sequence]["dataset"],
             "sequence": wildcards.sequence,
@@ -66,7 +66,7 @@ rule evaluate:
         code=code_of("evaluate"),
         settings=settings_of("evaluate"),
         seed=config["seed"],
-        folders=fingerprint_of("truth_masks", "truth_cameras"),
+        content=fingerprint_of("truth_masks", "truth_cameras", "truth_mesh"),
         labels=lambda wildcards: {
             "dataset": SEQUENCES[wildcards.sequence]["dataset"],
             "sequence": wildcards.sequence,

@@ -19,7 +19,7 @@ rule calibrate:
         code=code_of("calibrate"),
         settings=settings_of("calibrate"),
         seed=config["seed"],
-        folders=fingerprint_of("calibration"),
+        content=fingerprint_of("calibration"),
     message:
         "Calibrate the camera of {wildcards.sequence}."
     script:
@@ -28,7 +28,7 @@ rule calibrate:
 
 rule frames:
     input:
-        source=given("source"),
+        source=source_if_sound,
         masks=given("keyframe_masks"),
     output:
         frames="results/{sequence}/01_frames/frames.zarr.zip",
@@ -45,8 +45,8 @@ rule frames:
         code=code_of("frames"),
         settings=settings_of("frames"),
         seed=config["seed"],
-        folders=fingerprint_of("source", "keyframe_masks"),
-        refusal=lambda wildcards: MISSING.get(wildcards.sequence, ""),
+        content=fingerprint_of("source", "keyframe_masks"),
+        refusal=lambda wildcards: fault_of(wildcards.sequence),
     message:
         "Decode the frames of {wildcards.sequence}."
     script:

@@ -1,5 +1,8 @@
 # Where rules find their inputs: what the configuration names, and what depends on the keyframes.
 
+from functools import lru_cache
+
+from threedfs.inputs.check import find_fault
 from threedfs.params.configuration import JOINT_METHODS
 from threedfs.io.truth_files import choose_with_depth
 from threedfs.memory import estimate_memory
@@ -35,30 +38,59 @@ PAINTED = [method for method in METHODS if method.partition("@")[0] in SURFACES]
 def given(key):
     """Return an input function: a file or folder that the configuration names for a sequence, or nothing.
 
-    A folder's own time says little about its files: `fingerprint_of` watches those that no rule makes.
+    What the run does not make counts by its content, which `fingerprint_of` tells. A folder's time says little about
+    its files, and no result is newer than a video from a camera whose clock is ahead.
     """
 
     def find(wildcards):
         sequence = SEQUENCES[wildcards.sequence]
         path, own = sequence[key], not sequence["rendered"]
-        return path and (ancient(path) if own and Path(path).is_dir() else path) or []
+        return path and (ancient(path) if own else path) or []
 
     return find
 
 
 def fingerprint_of(*keys):
-    """Return a params function: digests of a sequence's folders in the configuration, if no rule makes them."""
+    """Return a params function: digests of what the configuration names for a sequence, if no rule makes it."""
 
     def digest(wildcards):
         sequence = SEQUENCES[wildcards.sequence]
         own = [] if sequence["rendered"] else keys
-        paths = [Path(sequence[key] or "") for key in own]
         return [
-            STORE_DIGESTS.folder_of_files(path) if path.name and path.is_dir() else ""
-            for path in paths
+            STORE_DIGESTS.any(Path(sequence[key])) if sequence[key] else ""
+            for key in own
         ]
 
     return digest
+
+
+@lru_cache(maxsize=None)
+def fault_of(sequence):
+    """Return why a sequence cannot be worked on, empty if nothing speaks against it."""
+    if sequence in MISSING or SEQUENCES[sequence]["rendered"]:
+        return MISSING.get(sequence, "")
+    own = SEQUENCES[sequence]["settings"].get("frames", {})
+    fault, notes = find_fault(
+        SEQUENCES[sequence], config["frames"] | own, Path(config["store"]) / "inputs"
+    )
+    if NOTES:
+        NOTES.writelines(f"note: inputs of {sequence}: {note}\n" for note in notes)
+    return fault
+
+
+def source_if_sound(wildcards):
+    """Return a sequence's images; end the run before it starts if the sequence cannot be worked on.
+
+    Unless others are to be finished: then its first job gets the sentence, and fails with it.
+    """
+    fault = fault_of(wildcards.sequence) if workflow.is_main_process else ""
+    settings = workflow.execution_settings  # none where only the rules are listed
+    if fault and settings and (len(SEQUENCES) == 1 or not settings.keep_going):
+        where = (
+            "" if wildcards.sequence in MISSING else f"inputs of {wildcards.sequence}: "
+        )
+        sys.exit(f"threedfs: {where}{fault}")
+    return given("source")(wildcards)
 
 
 def read_keyframes(wildcards):

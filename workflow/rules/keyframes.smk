@@ -22,7 +22,7 @@ checkpoint keyframes:
         code=code_of("keyframes"),
         settings=settings_of("keyframes"),
         seed=config["seed"],
-        folders=fingerprint_of("keyframe_masks"),
+        content=fingerprint_of("keyframe_masks"),
     message:
         "Choose the keyframes of {wildcards.sequence}."
     script:

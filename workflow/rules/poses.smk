@@ -51,7 +51,7 @@ rule poses:
         code=code_of("poses"),
         settings=settings_of("poses"),
         seed=config["seed"],
-        folders=fingerprint_of("cameras"),
+        content=fingerprint_of("cameras"),
         labels=lambda wildcards: {
             # those that true cameras may have change nothing here
             "intrinsics": (

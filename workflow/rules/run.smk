@@ -8,12 +8,6 @@ STARTED = time.time()
 REPORTED = ("cv2", "numba", "numpy", "pycolmap", "scipy", "skimage", "trimesh", "zarr")
 
 
-def refuse_missing():
-    """End the run if a file of a sequence is missing, unless the others are to be finished."""
-    if MISSING and not workflow.execution_settings.keep_going:
-        sys.exit(f"threedfs: {next(iter(MISSING.values()))}")
-
-
 def look_on_demand():
     """Let Snakemake look for the next job when one ends and only then, where jobs run on this machine.
 

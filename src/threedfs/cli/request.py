@@ -14,6 +14,7 @@ from typing import Any
 import yaml
 
 from threedfs.errors import UserError
+from threedfs.params.configuration import LONGEST_NAME
 from threedfs.params.sequences import RUN_FILES
 
 INTERRUPTED = 130
@@ -61,7 +62,8 @@ def read_height(text: str) -> float:
 def name_sequence(source: Path) -> str:
     """Return a name for the results of a file, of letters, digits, dots, dashes and underscores.
 
-    A name with none of these becomes a digest of it, so that two such files are told apart.
+    A name with none of these becomes a digest of it, and a very long one ends in a digest, so that two such files are
+    told apart.
 
     Examples
     --------
@@ -70,8 +72,11 @@ def name_sequence(source: Path) -> str:
     """
     stem = stem_of(source)
     name = re.sub(r"[^A-Za-z0-9.\-]+", "_", stem).strip("_.-")
+    digest = f"{zlib.crc32(stem.encode(errors='surrogateescape')):08x}"
     if not name:
-        return f"video_{zlib.crc32(stem.encode()):08x}"
+        return f"video_{digest}"
+    if len(name) > LONGEST_NAME:
+        return f"{name[: LONGEST_NAME - len(digest) - 1]}_{digest}"
     return f"{name}_video" if name in RUN_FILES else name
 
 
@@ -131,7 +136,7 @@ def read_settings(changes: Sequence[str]) -> dict[str, Any]:
             raise UserError(f"--set: expected STAGE.PARAMETER=VALUE, as in depth.iterations=5, got {change!r}.")
         try:
             value = yaml.safe_load(text)
-        except yaml.YAMLError:
+        except (yaml.YAMLError, ValueError, RecursionError):  # such as a date that there is not
             raise UserError(f"--set: expected a value after {key}=, got {text!r}; see config/README.md.") from None
         if len(parts) == 1:
             config[parts[0]] = value

@@ -113,5 +113,13 @@ def check_enough(reader: FrameReader, min_frames: int) -> None:
         raise UserError(
             f"{reader.source.path}: expected at least {min_frames} usable frames, got {reader.taken} "
             f"of {len(reader.source.names)} ({reader.blank} blank, {reader.skipped} that cannot be decoded); "
-            "film the object for longer."
+            f"{_advise(reader)}."
         )
+
+
+def _advise(reader: FrameReader) -> str:
+    if reader.skipped > max(reader.blank, reader.taken):
+        return "copy the files from the camera again, or convert them"
+    if reader.blank > reader.taken:
+        return "the pictures show nothing: check that the lens was free and the light on"
+    return "film the object for longer" if reader.source.ordered else "take more photos of the object"

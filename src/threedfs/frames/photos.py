@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import re
 from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -17,6 +19,8 @@ from threedfs.progress import Progress
 
 PHOTO_SUFFIXES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp")
 _EXIF_ORIENTATION = 274
+_LONGEST_NAME = 150  # bytes: results add marks and endings to it
+_NAME = re.compile(r"[^{}\x00-\x1f\x7f]+")  # braces are wildcards of the workflow
 _TURNED = (5, 6, 7, 8)  # EXIF orientations that swap rows and columns
 _DEPTH_MODES = ("I", "F")  # Pillow's modes of more than 8 bits a channel
 _FAULTS = (OSError, ValueError, SyntaxError, Image.DecompressionBombError)  # what Pillow raises for damaged files
@@ -84,6 +88,12 @@ def scan_photos(folder: Path, progress: Progress) -> Photos:
         progress.note(f"{folder}: {depth_maps} files left out, 16-bit or real-valued grey like depth maps")
     readable = list(shapes)
     if not readable:
+        if depth_maps:
+            raise UserError(
+                f"{folder}: expected photos with 8 bits a channel, got {depth_maps} files of 16-bit or real-valued "
+                f"grey, like depth maps{f', and {unreadable} that cannot be read' if unreadable else ''}; convert them "
+                "to 8 bits, or give the folder of the photos."
+            )
         raise UserError(
             f"{folder}: expected a video or a folder of photos ({', '.join(s[1:] for s in PHOTO_SUFFIXES)}), got a "
             f"folder in which none of {len(files)} such files can be read{_name_others(folder)}."
@@ -94,6 +104,12 @@ def scan_photos(folder: Path, progress: Progress) -> Photos:
         if shapes[file] != shape:
             progress.note(f"{file}: left out, {_say(shapes[file])}, while most photos are {_say(shape)}")
     kept = tuple(file for file in readable if shapes[file] == shape)
+    for file in kept:
+        if not _NAME.fullmatch(file.stem) or len(os.fsencode(file.stem)) > _LONGEST_NAME:
+            raise UserError(
+                f"{folder}: expected photos whose names can name results, got {file.name[:60]!r}; rename it to at most "
+                f"{_LONGEST_NAME} letters without braces and line breaks."
+            )
     twice = [name for name, count in Counter(file.stem for file in kept).items() if count > 1]
     if twice:
         raise UserError(

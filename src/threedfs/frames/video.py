@@ -17,6 +17,7 @@ from threedfs.errors import UserError
 from threedfs.frames.picture import Picture, name_video_frame
 
 _EXPECTED = "expected a video (mp4 or mov) or a folder of photos"
+_PLAYLISTS = {"hls", "applehttp", "concat", "dash", "sdp", "imf"}  # their pictures lie in other files
 
 
 @dataclass(frozen=True)
@@ -90,13 +91,20 @@ def scan_video(path: Path) -> Video:
 @contextmanager
 def _opened(path):
     try:
-        container = av.open(str(path))
+        container = av.open(f"file:{path}")  # else a name with a colon is taken for an address
     except (av.FFmpegError, OSError) as fault:
         raise UserError(f"{path}: {_EXPECTED}, got a file that cannot be opened as one ({_reason(fault)}).") from fault
     with container:
         # FFmpeg "plays" any text file as a terminal recording.
         if not container.streams.video or container.format.name == "tty":
             raise UserError(f"{path}: {_EXPECTED}, got a file without a video stream.")
+        kinds = set(container.format.name.split(","))
+        if kinds & _PLAYLISTS:
+            raise UserError(
+                f"{path}: {_EXPECTED}, got a list of other files ({container.format.name}); give the video."
+            )
+        if any(kind.endswith("_pipe") for kind in kinds):
+            raise UserError(f"{path}: {_EXPECTED}, got a single picture; put all photos into a folder and give that.")
         stream = container.streams.video[0]
         if stream.codec_context is None:
             raise UserError(f"{path}: expected a video in H.264 or HEVC, got a codec that is not known; convert it.")

@@ -12,6 +12,7 @@ The first three put the centre of the first pixel at (0.5, 0.5), the others at (
 from __future__ import annotations
 
 import json
+from collections import Counter
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -31,6 +32,7 @@ _FORMATS = (
     "a COLMAP model folder, transforms.json, cameras.json, a folder of CONTOUR matrices or of NAME.pose.txt, or a "
     "file of RGB-D Scenes v2 with the ending pose"
 )
+_LARGEST_SIDE = 100_000
 _OPENCV_FROM_OPENGL = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
@@ -66,7 +68,37 @@ def read_given_cameras(path: Path, intrinsics: Intrinsics | None = None) -> tupl
         cameras = _read_folder(path)
     if not cameras:
         raise UserError(f"{path}: expected at least one camera, got none; check the file.")
+    for camera in cameras:
+        _check_camera(path, camera)
+    keys = Counter(camera.name if camera.video_frame is None else camera.video_frame for camera in cameras)
+    (key, count), *_ = keys.most_common(1)
+    if count > 1:
+        raise UserError(
+            f"{path}: expected one camera of each image, got {count} of {str(key)[:60]}; remove the others."
+        )
     return tuple(cameras)
+
+
+def _check_camera(path: Path, given: GivenCamera) -> None:
+    """Refuse a camera that nothing can be seen with."""
+    camera, where = given.lens.camera, f"{path}: {given.name[:60]}"
+    numbers = (camera.fx, camera.fy, camera.cx, camera.cy, given.lens.k1, given.lens.k2)
+    if not np.all(np.isfinite(numbers)):
+        raise UserError(
+            f"{where}: expected finite numbers, got fx, fy, cx, cy, k1, k2 of {', '.join(f'{n:g}' for n in numbers)}."
+        )
+    if camera.fx <= 0 or camera.fy <= 0:
+        raise UserError(
+            f"{where}: expected positive focal lengths in pixels, got {camera.fx:g} and {camera.fy:g}; check the file."
+        )
+    # 0 x 0 where the format states no size
+    stated = camera.width != 0 or camera.height != 0
+    if stated and not (0 < camera.width <= _LARGEST_SIDE and 0 < camera.height <= _LARGEST_SIDE):
+        raise UserError(
+            f"{where}: expected images of 1 to {_LARGEST_SIDE} pixels a side, got {camera.width}x{camera.height}."
+        )
+    if not np.all(np.isfinite(given.cam_from_world)):
+        raise UserError(f"{where}: expected a pose of finite numbers, got NaN or infinity.")
 
 
 def _read_poses(path: Path) -> tuple[dict[str, np.ndarray], Intrinsics | None]:
@@ -110,7 +142,7 @@ def _read_colmap(folder: Path) -> list[GivenCamera]:
     except ValueError as fault:
         raise UserError(
             f"{folder}: expected a COLMAP model with radial distortion at most, got {fault}; "
-            "undistort the images with COLMAP and give that model."
+            "export it again, or undistort the images with COLMAP and give that model."
         ) from fault
     return [GivenCamera(Path(name).stem, None, lens, pose) for name, lens, pose in images]
 
@@ -120,11 +152,13 @@ def _read_json(path: Path) -> list[GivenCamera]:
         content = json.loads(path.read_text(encoding="utf-8"))
         entries = content["frames"]
         return [_read_entry(path, content, entry) for entry in entries]
-    except (UnicodeDecodeError, json.JSONDecodeError, TypeError, ValueError, KeyError) as fault:
-        raise UserError(
-            f"{path}: expected {_FORMATS}, got a file without what cameras need "
-            f"({type(fault).__name__}: {fault}); check the file."
-        ) from fault
+    except KeyError as fault:
+        reason = f"a file without the key {fault} that cameras need"
+    except (UnicodeDecodeError, json.JSONDecodeError, RecursionError) as fault:
+        reason = f"a file that is no JSON ({str(fault)[:80]})"
+    except (TypeError, ValueError, AttributeError, OverflowError) as fault:
+        reason = f"a file whose entries are no cameras ({str(fault)[:80]})"
+    raise UserError(f"{path}: expected {_FORMATS}, got {reason}; check the file.")
 
 
 def _read_entry(path: Path, content: Mapping[str, Any], entry: Mapping[str, Any]) -> GivenCamera:
@@ -178,7 +212,7 @@ def _read_contour(path: Path) -> GivenCamera:
     try:
         projection = np.array(path.read_text().split()[1:], np.float64).reshape(3, 4)
         intrinsics, cam_from_world = decompose_projection(projection)
-    except ValueError as fault:
+    except (ValueError, np.linalg.LinAlgError) as fault:
         raise UserError(f"{path}: expected CONTOUR and the 12 numbers of a projection, got {fault}.") from fault
     camera = Camera(
         0,

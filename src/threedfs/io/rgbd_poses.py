@@ -99,6 +99,6 @@ def read_pose_lines(path: Path) -> dict[str, np.ndarray]:
 
 def _read_matrix(file: Path, shape: tuple[int, int]) -> np.ndarray:
     try:
-        return np.array(file.read_text().split(), np.float64).reshape(shape)
+        return np.array(file.read_text(errors="replace").split(), np.float64).reshape(shape)
     except ValueError as fault:
         raise UserError(f"{file}: expected a {shape[0]}x{shape[1]} matrix, got {fault}.") from fault

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import math
+from collections.abc import Iterator, Mapping
 from typing import Any
 
 import jsonschema
@@ -32,7 +33,14 @@ VARIED_STAGES = ("segment", "cut_object", "surface")
 """What a variant of them may change."""
 NAMES_OF_SEQUENCES = ("sequences", "cylinder_sequences")
 """Parameters that name sequences, and mean nothing for a single one."""
-SEQUENCE_NAME = r"^[A-Za-z0-9_][A-Za-z0-9_.-]*$"
+LONGEST_NAME = 100
+"""Letters of a name: file systems allow 255, and methods, endings and marks of unfinished files are added to it."""
+SEQUENCE_NAME = rf"^[A-Za-z0-9_][A-Za-z0-9_.-]{{0,{LONGEST_NAME - 1}}}(?!\n)$"
+LARGEST_INTEGER = 2**31 - 1
+"""What the libraries below take as a whole number, and as a seed."""
+
+_DEEPEST = 20
+_WIDEST_RENDER = 8192
 
 _PATH = {"type": ["string", "null"]}
 _KINDS = {"array": "a list", "object": "keys with values"}
@@ -93,11 +101,13 @@ def configuration_schema() -> dict[str, Any]:
                 "properties": {stage: {"type": "object"} for stage in VARIED_STAGES},
             },
         },
-        "seed": {"type": "integer", "minimum": 0},
+        "seed": {"type": "integer", "minimum": 0, "maximum": LARGEST_INTEGER},
         "store": {"type": "string", "minLength": 1},
         "store_fallback": _PATH,
     }
     stages = {stage: stage_schema(declared) for stage, declared in declared_stages().items()}
+    # not declared with the parameter: an edit of its file would film all sequences anew
+    stages["render"]["properties"]["width"]["maximum"] = _WIDEST_RENDER
     return {
         "type": "object",
         "additionalProperties": False,
@@ -118,6 +128,7 @@ def check_configuration(config: Mapping[str, Any], schema: Mapping[str, Any]) ->
     UserError
         For the first fault, in the order of the keys; values that do not fit each other come last.
     """
+    _check_plain(config)
     _check_against(schema, config)
     for stage, declared in declared_stages().items():
         make_params(declared, config[stage])
@@ -146,8 +157,46 @@ def _check_changes(
     make_params(declared_stages()[stage], changed)
 
 
+def _check_plain(value: Any, path: tuple[str, ...] = ()) -> None:
+    """Refuse what YAML can write and no parameter can be, before a schema is asked: it compares and sorts keys."""
+    where = f"configuration, {'.'.join(path)}" if path else "configuration"
+    if len(path) > _DEEPEST:
+        raise UserError(f"{where[:80]}...: expected at most {_DEEPEST} levels of keys, got more; see config/README.md.")
+    for key, item in _list_items(value):
+        if not isinstance(key, str):
+            told = str(key).lower() if isinstance(key, bool) else "null" if key is None else str(key)
+            raise UserError(
+                f"{where}: expected a name, got {told}, which YAML reads as another kind of value; put it in quotes, "
+                f"as '{told}'."
+            )
+        _check_plain(item, (*path, key))
+    if isinstance(value, float) and not math.isfinite(value):
+        raise UserError(f"{where}: expected a finite number, got {value}.")
+    if isinstance(value, int) and abs(value) > LARGEST_INTEGER:
+        digits = int(math.log10(abs(value))) + 1
+        raise UserError(f"{where}: expected a whole number up to {LARGEST_INTEGER}, got one of {digits} digits.")
+
+
+def _list_items(value: Any) -> Iterator[tuple[Any, Any]]:
+    if isinstance(value, Mapping):
+        yield from value.items()
+    elif isinstance(value, (list, tuple)):
+        yield from ((str(number), item) for number, item in enumerate(value))
+
+
+def _is_integer(checker: Any, value: Any) -> bool:
+    """Say whether a value is a whole number; JSON Schema takes 5.0 for one, and Python does not count to 5.0."""
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+_Validator = jsonschema.validators.extend(
+    jsonschema.Draft202012Validator,
+    type_checker=jsonschema.Draft202012Validator.TYPE_CHECKER.redefine("integer", _is_integer),
+)
+
+
 def _check_against(schema: Mapping[str, Any], values: Mapping[str, Any], where: str = "") -> None:
-    faults = jsonschema.Draft202012Validator(schema).iter_errors(values)
+    faults = _Validator(schema).iter_errors(values)
     fault = min(faults, key=lambda fault: [str(part) for part in fault.absolute_path], default=None)
     if fault is not None:
         raise UserError(_explain(fault, where))
@@ -191,6 +240,10 @@ def _explain(fault: jsonschema.ValidationError, start: str) -> str:
 def explain_name(name: str, where: str, what: str = "sequence") -> str:
     """Say why a name cannot name a sequence, or what else it is to name, and where it stands."""
     return (
-        f"{name!r} cannot name a {what}: expected letters, digits, dots, dashes and underscores only, "
-        f"because results are put in a folder of that name (in {where})."
+        f"{_shorten(name)!r} cannot name a {what}: expected letters, digits, dots, dashes and underscores only, at "
+        f"most {LONGEST_NAME}, because results are put in a folder of that name (in {_shorten(where, 200)})."
     )
+
+
+def _shorten(text: str, longest: int = 60) -> str:
+    return text if len(text) <= longest else f"{text[:longest]}..."

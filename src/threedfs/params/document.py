@@ -74,9 +74,9 @@ What the file names takes the place of the default, everything else stays. `pres
 the paper, `presets/quick.yaml` makes everything small; files can be given together, the last counts:
 `--configfile my.yaml config/presets/paper.yaml`. Sections are merged key by key, so a second file adds its sequences
 to those of the first; lists and single values are replaced. `benchmark.yaml` is the whole benchmark.
-One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`. What is one word in `config.yaml` can be
-given so (`video`, `dataset`, `seed`, `store`, `store_fallback`, `'methods=[fused_sdf, tsdf]'`); the parameters of
-stages can not: write `depth: {iterations: 5}` into my.yaml.
+One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`. Other values can be given so too
+(`dataset`, `seed`, `store`, `store_fallback`, `'methods=[fused_sdf, tsdf]'`, `'depth={iterations: 5}'`); not with a
+dot, which Snakemake refuses.
 `datasets/` has files of sequences: the data sets that the project is measured on, and the layouts of published ones.
 
 An unknown key, a wrong type or a value out of range stops the run before it starts, with a sentence.
@@ -97,11 +97,12 @@ frame's number from 0 (`120.png`) or like the photo; a few are enough. Scores: `
 They may be added when all is done: only scores are computed. At a keyframe, its mask is scored; at another frame that
 was worked on, the mesh as that frame's camera sees it. A long video is worked on at every n-th frame, and
 `threedfs export results/mug scene --scene` writes those: a mask of a frame between them is left out, which the tables
-tell, unless `truth.cameras` has its camera or `keyframes_at_truth` is set.
+tell, unless `truth.cameras` has its camera or `keyframes_at_truth` is set. A mask may be black all over, where the
+object is out of view; not all of them may.
 
-A missing file or folder stops the run before it starts (a dry run, `-n`, looks for `video` only). With `--keep-going`
-its sequence fails at once and the others are finished, as with whatever else may go wrong in a sequence; the tables
-name it with the reason, and the exit status is not 0.
+A file or folder that is missing or cannot be used stops the run before it starts; a dry run, `-n`, looks at all of them
+too. With `--keep-going` its sequence fails at once and the others are finished, as with whatever else may go wrong in a
+sequence; the tables name it with the reason, and the exit status is not 0.
 
 ## Parameters
 

@@ -10,6 +10,8 @@ import numpy as np
 from threedfs.errors import UserError
 from threedfs.geometry.lens import Lens
 
+_FEWEST_POSED = 8
+
 
 @dataclass(frozen=True)
 class GivenCamera:
@@ -76,6 +78,21 @@ def find_cameras(
             "make the names agree."
         )
     return found
+
+
+def check_enough_given(posed: int, frames: int) -> None:
+    """Check that frames with a given camera are enough to see an object from around.
+
+    Raises
+    ------
+    UserError
+        If they are fewer than eight, and not all.
+    """
+    if posed < min(_FEWEST_POSED, frames):
+        raise UserError(
+            f"poses: expected given cameras for at least {min(_FEWEST_POSED, frames)} of the {frames} frames, got "
+            f"{posed}; give cameras of more frames, or none: then they are estimated."
+        )
 
 
 def state_size(lens: Lens, source_shape: tuple[int, int]) -> Lens:

@@ -159,6 +159,12 @@ def judge(facts: Facts) -> list[Finding]:
     return sorted(found, key=lambda finding: finding.good)
 
 
+def doubt_truth(sentences: list[str]) -> list[Finding]:
+    """Return a failed check for each sentence that makes the truth doubtful."""
+    advice = "Scores say nothing if the truth is of something else: give the truth of this sequence."
+    return [Finding("truth", sentence, "that of this sequence", False, advice) for sentence in sentences]
+
+
 def sum_up(findings: list[Finding]) -> str:
     """Return one sentence on the whole."""
     bad = [finding for finding in findings if not finding.good]

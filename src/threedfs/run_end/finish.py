@@ -9,6 +9,7 @@ from pathlib import Path
 
 from threedfs.errors import UserError
 from threedfs.evaluate.costs import cost_figures
+from threedfs.evaluate.doubts import doubt_tables
 from threedfs.evaluate.experiment_tables import experiment_tables, group_experiments
 from threedfs.evaluate.plots import plot_depth_experiment, plot_overlap
 from threedfs.evaluate.scores import Metric, Scores
@@ -47,6 +48,7 @@ TABLES = {
     "poses": pose_tables,
     "meshes": mesh_tables,
     "depth": depth_tables,
+    "doubts": doubt_tables,
 }
 """Files of tables, by name, in the order in which they are read."""
 
@@ -269,6 +271,8 @@ def _summarise(scores: Scores) -> str:
     }
     parts = [render_summary(lines)] if lines else []
     parts += [render_overlap(scores)] if len(scores.datasets) > 1 else []
+    doubts = [row for dataset in scores.all_datasets for table in doubt_tables(scores, dataset) for row in table.rows]
+    parts += ["\n".join(f"doubtful truth of {row[0]}, {row[1]}: {row[2]}" for row in doubts)] if doubts else []
     return "\n\n".join([*parts, _sum_up_costs(scores)])
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from threedfs.errors import UserError
 from threedfs.evaluate.costs import cost_figures
+from threedfs.evaluate.doubts import find_doubts
 from threedfs.evaluate.figures import soundness_figures
 from threedfs.evaluate.scores import Metric
 from threedfs.geometry.projection import normals_from_depth
@@ -24,7 +25,7 @@ from threedfs.io.poses import Poses, read_poses
 from threedfs.io.textured_meshes import read_textured_obj
 from threedfs.io.volumes import read_silhouettes, read_support
 from threedfs.report.camera_path import draw_path, widest_gap
-from threedfs.report.findings import Facts, Finding, judge, sum_up
+from threedfs.report.findings import Facts, Finding, doubt_truth, judge, sum_up
 from threedfs.report.page import KeyframePictures, Report, write_page
 from threedfs.report.pictures import color_depth, color_normals, embed_image, outline_mask
 from threedfs.report.viewer import embed_viewer
@@ -102,7 +103,7 @@ def write_report(folder: Path, context: Context) -> Path:
     report = Report(
         folder.name,
         failures=tuple(context.failures),
-        findings=findings,
+        findings=() if failed else (*_doubt(context.metrics), *findings),
         viewer=embed_viewer(shown.surface, known.place.plane, known.poses.views, embed_image(shown.still, _STILL))
         if shown
         else "",
@@ -157,6 +158,15 @@ def write_reports(folders: Sequence[Path], contexts: Callable[[str], Context], n
                 temporary.write_text(write_page(bare), encoding="utf-8")
             failed = "its report could not be made"
             write_summary(folder, Summary(context.methods or (), verdict=failed, failures=tuple(context.failures)))
+
+
+def _doubt(metrics: Sequence[Metric]) -> list[Finding]:
+    """Return what makes the truth of a sequence doubtful, each sentence once for all methods."""
+    figures: dict[str, dict[str, float]] = defaultdict(dict)
+    for metric in metrics:
+        if not metric.keyframe:
+            figures[metric.method][metric.name] = metric.value
+    return doubt_truth(list(dict.fromkeys(sentence for own in figures.values() for sentence in find_doubts(own))))
 
 
 def find_out(folder: Path, methods: Collection[str] | None = None) -> list[Finding]:

@@ -12,10 +12,11 @@ from threedfs.evaluate.figures import Figure, mask_figures, mesh_figures, pose_f
 from threedfs.evaluate.masks import intersection_over_union
 from threedfs.evaluate.mesh_error import bounding_diagonal, measure_mesh
 from threedfs.evaluate.pose_error import align_poses, measure_poses
+from threedfs.frames.true_masks import check_true_masks, read_true_mask
 from threedfs.geometry.similarity import Similarity
 from threedfs.io.given_cameras import read_given_cameras
+from threedfs.io.given_meshes import read_given_mesh
 from threedfs.io.images import read_mask
-from threedfs.io.meshes import read_mesh
 from threedfs.params.evaluate import EvaluateParams
 from threedfs.types import Mesh
 
@@ -34,7 +35,7 @@ def score_masks(masks: Path, truth: Path) -> list[Figure]:
     Raises
     ------
     UserError
-        If they have no name in common, sizes differ, or a true mask is all of one colour.
+        If they have no name in common, sizes differ, or true masks cannot be ones or are all empty.
     """
     mine, true = _list_masks(masks), _list_masks(truth)
     common = [name for name in mine if name in true]
@@ -42,15 +43,11 @@ def score_masks(masks: Path, truth: Path) -> list[Figure]:
         raise UserError(
             f"{truth}: expected masks named like those of {masks}, such as {next(iter(mine))}, found none of that name."
         )
-    overlap = {}
-    for name in common:
-        wanted = read_mask(true[name])
-        if wanted.all() or not wanted.any():
-            raise UserError(
-                f"{true[name]}: expected a white object on black, found one colour only; masks with levels 0 and 1 "
-                "must be multiplied by 255."
-            )
-        overlap[name] = intersection_over_union(read_mask(mine[name]), wanted, str(true[name]))
+    check_true_masks([true[name] for name in common], str(truth))
+    overlap = {
+        name: intersection_over_union(read_mask(mine[name]), read_true_mask(true[name]), str(true[name]))
+        for name in common
+    }
     return mask_figures(overlap)
 
 
@@ -69,7 +66,7 @@ def score_mesh(mesh: Path, truth: Path, cameras: Path | None = None, true_camera
     UserError
         If a file cannot be read, the meshes do not meet at all, or cameras are given for one of them only.
     """
-    mine, true = read_mesh(mesh), read_mesh(truth)
+    mine, true = read_given_mesh(mesh), read_given_mesh(truth)
     if (cameras is None) != (true_cameras is None):
         raise UserError("score: expected cameras of the mesh and of the true one, or of none, got those of one.")
     if cameras is not None:

@@ -16,8 +16,10 @@ from threedfs.evaluate.scores import Metric
 from threedfs.evaluate.true_cameras import TrueCameras, relate_cameras
 from threedfs.frames.masks import find_masks
 from threedfs.frames.picture import name_video_frame
+from threedfs.frames.true_masks import read_true_mask
 from threedfs.io.frames import FrameStore, read_frames
 from threedfs.io.given_cameras import read_given_cameras
+from threedfs.io.given_meshes import read_given_mesh
 from threedfs.io.images import read_mask
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
@@ -73,7 +75,7 @@ def run(
         figures += _score_masks(masks_truth, masks, surface, aligned, truth, selected, solved, store, job)
     figures.append(Figure("masks_cut_off", _count_cut_off(silhouettes, crops, solved, job), "masks"))
     if mesh_truth is not None and aligned is not None:
-        exact = read_mesh(mesh_truth)
+        exact = read_given_mesh(mesh_truth)
         figures += mesh_figures(measure_mesh(aligned, exact, params.mesh_thresholds, params.surface_samples, generator))
     if surface is not None:
         figures += soundness_figures(surface)
@@ -121,10 +123,12 @@ def _score_masks(
     at_keyframe = [name for name in files if name in selected]
     at_frame = [name for name in files if name in posed and name not in selected and surface is not None]
     at_unseen = [name for name in files if name in unseen and aligned is not None]
-    overlap = {
-        name: intersection_over_union(read_mask(masks / f"{name}.png"), read_mask(files[name]), str(files[name]))
-        for name in at_keyframe
-    }
+    overlap, inverted = {}, []
+    for name in at_keyframe:
+        mine, exact = read_mask(masks / f"{name}.png"), read_true_mask(files[name])
+        overlap[name] = intersection_over_union(mine, exact, str(files[name]))
+        if mine.any() and intersection_over_union(mine, ~exact) > overlap[name]:
+            inverted.append(name)
     without_keyframe = [name for name in files if name not in selected and name not in unseen]
     left_out = [name for name in files if name not in {*at_keyframe, *at_frame, *at_unseen}]
     if left_out:
@@ -136,6 +140,9 @@ def _score_masks(
     figures = [*mask_figures(overlap), Figure("masks_without_keyframe", len(without_keyframe), "masks")]
     if left_out:
         figures.append(Figure("masks_left_out", len(left_out), "masks"))
+    if inverted:
+        job.progress.note(f"true masks agree better when inverted: {_name_some(inverted)}; is white the object?")
+        figures.append(Figure("masks_inverted", len(inverted), "masks"))
     drawn = {name: (surface, posed[name], solved.distortion, store.source_shape) for name in at_frame}
     figures += mask_figures(_compare_drawn(drawn, files, job), "iou_frames")
     drawn = {name: (aligned, *unseen[name], unseen[name][0].camera.shape) for name in at_unseen}
@@ -158,7 +165,7 @@ def _compare_drawn(
     """Draw a mesh in views, each with its distortion and shape, and compare it with the true masks of their names."""
     overlap = {}
     for name in job.progress.track([*drawn], "view without a mask"):
-        exact, (mesh, view, distortion, shape) = read_mask(files[name]), drawn[name]
+        exact, (mesh, view, distortion, shape) = read_true_mask(files[name]), drawn[name]
         check_mask_size(exact, shape, str(files[name]))
         overlap[name] = intersection_over_union(draw_source_silhouette(mesh, view, distortion, shape), exact)
     return overlap

@@ -16,8 +16,8 @@ from threedfs.evaluate.true_cameras import TrueCameras, relate_cameras
 from threedfs.io.depth_maps import read_depth_map
 from threedfs.io.frames import FrameStore, read_frames
 from threedfs.io.given_cameras import read_given_cameras
+from threedfs.io.given_meshes import read_given_mesh
 from threedfs.io.keyframes import read_keyframes
-from threedfs.io.meshes import read_mesh
 from threedfs.io.metrics import write_metrics
 from threedfs.io.poses import Poses, read_poses
 from threedfs.io.truth import read_true_depth
@@ -59,7 +59,7 @@ def run(
         truth = relate_cameras(read_given_cameras(cameras_truth, intrinsics), solved.views, store)
         figures += _score_poses(truth, solved)
         if mesh_truth is not None:
-            figures += _score_depth_by_mesh(read_mesh(mesh_truth), maps, truth, selected, solved, params)
+            figures += _score_depth_by_mesh(read_given_mesh(mesh_truth), maps, truth, selected, solved, params)
         if depth_truth is not None:
             images = find_depth_images(depth_truth, selected)
             figures += _score_depth_by_images(images, depth_scale, depth_camera, maps, truth, selected, solved, store)

@@ -6,6 +6,7 @@ from pathlib import Path
 
 from threedfs.frames.decode import FrameReader, check_enough, choose_step, scan_source
 from threedfs.frames.masks import check_mask_sizes, find_masks
+from threedfs.frames.true_masks import check_true_masks
 from threedfs.io.frames import write_frames
 from threedfs.job import Job
 from threedfs.params.frames import FramesParams
@@ -18,11 +19,12 @@ def run(*, source: Path, masks: Path | None, frames: Path, params: FramesParams,
     ------
     UserError
         If the source is missing, is neither video nor photos or has too few usable frames, or if a mask has the
-        wrong size or none belongs to a frame.
+        wrong size, cannot be a mask, or none belongs to a frame.
     """
     scanned = scan_source(source, job.progress)
     annotated = {} if masks is None else find_masks(masks, scanned.names, numbered=scanned.ordered)
     check_mask_sizes(annotated, scanned.shape)
+    check_true_masks(annotated.values(), str(masks))
     reader = FrameReader(
         scanned,
         job.progress,

@@ -29,7 +29,7 @@ from threedfs.poses.gates import (
     check_quality,
     check_registered,
 )
-from threedfs.poses.given import GivenCamera, find_cameras, fit_lens, shared_distortion
+from threedfs.poses.given import GivenCamera, check_enough_given, find_cameras, fit_lens, shared_distortion
 from threedfs.poses.matcher import FrameFeatures, MatchRule, PairMatcher
 from threedfs.poses.normalise import find_scale, rescale_points
 from threedfs.poses.pairs import overlapping_pairs
@@ -100,6 +100,7 @@ def _triangulate_given(
 ) -> Solved:
     store = film.store
     found = find_cameras(given, store.names, store.indices, numbered=store.ordered)
+    check_enough_given(len(found), len(store.names))
     every_lens = {number: fit_lens(camera.lens, store.source_shape, store.shape) for number, camera in found.items()}
     every_pose = {number: camera.cam_from_world for number, camera in found.items()}
     ranks = {rank: number for rank, number in enumerate(film.described) if number in found}

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import errno
 import sys
 import time
 import traceback
 from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, TextIO
 
@@ -17,6 +18,8 @@ from threedfs.store.action import Inputs, Task
 from threedfs.store.arguments import fit_inputs, read_arguments, read_order
 from threedfs.store.each import Chain, Fault, Passage, perform_each
 from threedfs.store.perform import Store, explained, perform
+
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EFBIG)
 
 
 class Tee:
@@ -185,6 +188,16 @@ def _logged(log: Path, label: str) -> Iterator[tuple[TextIO, Tee]]:
             yield file, streams
         except UserError as fault:
             print(f"threedfs: {label}: {fault}", file=streams)
+            sys.exit(1)
+        except OSError as fault:
+            if fault.errno not in _NO_ROOM:
+                traceback.print_exc(file=file)
+                raise
+            where = f" at {fault.filename}" if fault.filename else ""
+            told = f"expected room to write to, got: {fault.strerror}{where}; free some, and run again."
+            print(f"threedfs: {label}: {told}", file=sys.stderr)
+            with suppress(OSError):  # the log may lie on the same disk
+                print(f"threedfs: {label}: {told}", file=file, flush=True)
             sys.exit(1)
         except BaseException:
             traceback.print_exc(file=file)
