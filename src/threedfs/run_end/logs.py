@@ -3,12 +3,36 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from threedfs.evaluate.scores import Failure
 
 _DONE = "action "
 _REFUSED = "threedfs: "
+
+
+@dataclass(frozen=True)
+class Action:
+    """What was done once, also if a job then took it from the store.
+
+    Attributes
+    ----------
+    rule : str
+        Of the job, by the place of its log.
+    key : str
+    record : mapping
+        Of the store.
+    recorded : float
+        When it was done, seconds since the epoch.
+    """
+
+    rule: str
+    key: str
+    record: Mapping[str, Any]
+    recorded: float
 
 
 def find_failures(results: Path, since: float) -> list[Failure]:
@@ -37,12 +61,27 @@ def find_failures(results: Path, since: float) -> list[Failure]:
     return failures
 
 
-def read_actions(folder: Path, store: Path) -> list[dict]:
+def read_actions(folder: Path, store: Path) -> list[Mapping[str, Any]]:
     """Read the records of the actions that the jobs of a sequence did, which their logs name."""
-    lines = (line for log in _find_logs(folder) for line in _read_lines(log))
-    keys = sorted(line.removeprefix(_DONE) for line in lines if line.startswith(_DONE))
-    records = (store / "actions" / key[:2] / f"{key}.json" for key in keys)
-    return [json.loads(record.read_text()) for record in records if record.is_file()]
+    actions = sorted((action for job in read_jobs(folder, store) for action in job), key=lambda action: action.key)
+    return [action.record for action in actions]
+
+
+def read_jobs(folder: Path, store: Path) -> list[list[Action]]:
+    """Read the actions that each job of a sequence did, those of the scene pass first."""
+    jobs = []
+    for log in _find_logs(folder):
+        keys = [line.removeprefix(_DONE) for line in _read_lines(log) if line.startswith(_DONE)]
+        paths = [(key, store / "actions" / key[:2] / f"{key}.json") for key in keys]
+        rule = log.relative_to(folder).as_posix().rpartition("logs/")[2].removesuffix(".log").partition("/")[0]
+        jobs.append(
+            [
+                Action(rule, key, json.loads(path.read_text()), path.stat().st_mtime)
+                for key, path in paths
+                if path.is_file()
+            ]
+        )
+    return [job for job in jobs if job]
 
 
 def _read_refusal(line: str, sequence: str, item: str) -> Failure:
