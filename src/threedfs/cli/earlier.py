@@ -10,7 +10,6 @@ from statistics import mean, median
 from typing import Any
 
 from threedfs.cli.costs import MEASURED, Cost, Costs, Size
-from threedfs.errors import UserError
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.poses import read_poses
 from threedfs.run_end.logs import Action, read_jobs
@@ -55,14 +54,11 @@ def measure_size(folder: Path) -> Size:
     """Return how large the input of a sequence is, by what lies in the folder of its results."""
     try:
         poses = read_poses(folder / "02_poses/poses.json")
-        frames = len(poses.views) + len(poses.unposed)
-    except UserError:
-        frames = None
-    try:
         cameras = [keyframe.view.camera for keyframe in read_keyframes(folder / "04_crops/keyframes.json").values()]
-    except UserError:
-        return Size(frames)
-    return Size(frames, len(cameras), mean(camera.width * camera.height for camera in cameras))
+    except Exception:  # not there yet, or damaged: an estimate must not end a run
+        return Size()
+    frames = len(poses.views) + len(poses.unposed)
+    return Size(frames, len(cameras), mean(camera.width * camera.height for camera in cameras) if cameras else None)
 
 
 def _recall(

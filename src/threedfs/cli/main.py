@@ -8,6 +8,7 @@ import webbrowser
 from collections.abc import Sequence
 from pathlib import Path
 
+from threedfs.cli.clean import add_clean
 from threedfs.cli.export import add_export
 from threedfs.cli.request import INTERRUPTED, QUALITIES, count_cores
 from threedfs.errors import UserError
@@ -70,6 +71,7 @@ def _make_parser() -> argparse.ArgumentParser:
     show.set_defaults(act=_show)
 
     add_export(actions)
+    add_clean(actions)
 
     score = actions.add_parser("score", help="score masks, a mesh or cameras of any program against a truth")
     for what, form in (("masks", "folder of PNG"), ("mesh", "ply, obj, stl or glb"), ("cameras", "as the truth's")):

@@ -143,7 +143,8 @@ class Progress:
         if message.startswith((_FROM_STORE, "done in")):
             self._taken[stage].append(message.startswith(_FROM_STORE))
             if stage == "crops" and self._measure:
-                self._sizes[sequence] = self._measure(sequence)
+                measured = {name: value for name, value in vars(self._measure(sequence)).items() if value}
+                self._sizes[sequence] = replace(self._sizes[sequence], **measured)
 
     def show(self, last: bool = False) -> None:
         """Show how far the run has come, if it is time to."""

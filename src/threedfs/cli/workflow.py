@@ -81,7 +81,7 @@ def run_workflow(
     try:
         log.parent.mkdir(parents=True, exist_ok=True)
         with (
-            _claim(out),
+            claim(out),
             open(log, "w", encoding="utf-8") as file,
             open(log.with_name("progress.txt"), "w", encoding="utf-8") as journal,
         ):
@@ -101,8 +101,14 @@ def run_workflow(
 
 
 @contextmanager
-def _claim(out: Path) -> Iterator[None]:
-    """Keep other commands out of a folder."""
+def claim(out: Path) -> Iterator[None]:
+    """Keep other commands out of a folder.
+
+    Raises
+    ------
+    UserError
+        If one is at work in it.
+    """
     with open(out / "results/logs/run.lock", "w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
