@@ -27,12 +27,19 @@ def finished_command(first_run, tmp_path_factory):
 
 
 @pytest.fixture
-def mine(finished_command):
+def mine(finished_command, monkeypatch, capsys):
     """The folder as it was, and what calls the command in it; the place of the video counts, so it stays."""
     project, folder, kept = finished_command
     shutil.rmtree(folder)
     shutil.copytree(kept, folder, symlinks=True)
-    return folder, lambda *words: call(project, folder, *words)
+    monkeypatch.chdir(folder)
+
+    def run(*words):
+        if words[0] == "run":
+            return call(project, folder, *words)
+        return main(words), capsys.readouterr().out
+
+    return folder, run
 
 
 def call(project, folder, *words):
@@ -105,7 +112,7 @@ def test_with_a_changed_parameter_what_was_removed_comes_back(mine):
     status, output = run("run", "mug.mp4", "--cores", "2", "--set", "depth.iterations=3")
     assert status == 0, output
     said = (folder / "results/logs/run.txt").read_text()
-    assert "crops of mug: taken from the store" in said
+    assert "frames of mug: taken from the store" in said and "poses of mug" not in said
     assert "iterations=3" in json.loads(next((folder / "results/mug/06_depth").iterdir()).read_text())["params"]
 
 
@@ -120,18 +127,16 @@ def test_with_a_changed_parameter_what_was_removed_comes_back(mine):
         (["mug", "--out", "elsewhere"], "expected a folder that holds results of runs, found none"),
     ],
 )
-def test_what_is_not_there_is_refused(mine, monkeypatch, capsys, words, sentence):
+def test_what_is_not_there_is_refused(mine, capsys, words, sentence):
     folder, _ = mine
     before = files_of(folder)
-    monkeypatch.chdir(folder)
     assert main(["clean", *words, "--yes"]) == 1
     assert sentence in capsys.readouterr().err
     assert files_of(folder) == before
 
 
-def test_a_sequence_that_is_not_finished_stays(mine, monkeypatch, capsys):
+def test_a_sequence_that_is_not_finished_stays(mine, capsys):
     folder, _ = mine
-    monkeypatch.chdir(folder)
     (folder / "results/mug/logs/depth.log").write_text("threedfs: depth of mug: too dark.\n")
     before = files_of(folder)
     assert main(["clean", "mug", "--yes"]) == 1
@@ -142,9 +147,8 @@ def test_a_sequence_that_is_not_finished_stays(mine, monkeypatch, capsys):
 
 
 @pytest.mark.parametrize("lock", ["results/logs/run.lock", ".snakemake/run.lock"])
-def test_beside_a_run_nothing_is_removed(mine, monkeypatch, capsys, lock):
+def test_beside_a_run_nothing_is_removed(mine, capsys, lock):
     folder, _ = mine
-    monkeypatch.chdir(folder)
     before = files_of(folder)
     with open(folder / lock, "a") as file:
         fcntl.flock(file, fcntl.LOCK_EX)
@@ -153,9 +157,8 @@ def test_beside_a_run_nothing_is_removed(mine, monkeypatch, capsys, lock):
     assert files_of(folder) == before
 
 
-def test_links_are_removed_and_not_followed(mine, monkeypatch, tmp_path):
+def test_links_are_removed_and_not_followed(mine, tmp_path):
     folder, _ = mine
-    monkeypatch.chdir(folder)
     (tmp_path / "precious").mkdir()
     (tmp_path / "precious/file.bin").write_text("mine")
     (folder / "results/mug/06_depth/link.bin").symlink_to(tmp_path / "precious/file.bin")
