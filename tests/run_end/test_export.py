@@ -7,13 +7,15 @@ import shutil
 import numpy as np
 import pytest
 import trimesh
+from gltf import NotGltf, read_glb
 
+from threedfs.cli.main import main
 from threedfs.errors import UserError
 from threedfs.io.colored_meshes import read_colored_mesh, write_colored_mesh
 from threedfs.io.meshes import read_mesh, write_mesh
 from threedfs.io.textured_meshes import read_textured_obj, write_textured_obj
 from threedfs.io.volumes import write_support
-from threedfs.run_end.export import export
+from threedfs.run_end.export import export, export_levels
 from threedfs.texture.textured import TexturedMesh
 from threedfs.types import Box, Mesh, Plane, Support
 
@@ -114,3 +116,117 @@ def test_format_that_is_not_known_and_mesh_that_is_not_there_are_refused(results
     with pytest.raises(UserError, match=r"poisson.*expected the mesh of a run, found none"):
         export(results, "40", results / "ball.stl", "poisson")
     assert not list(results.glob("ball.*"))
+
+
+def test_a_textured_glb_keeps_to_the_standard(painted):
+    """Exact: read without trimesh, it is the mesh and the picture; v points down in glTF."""
+    export(painted, "40", painted / "ball.glb")
+    (found,) = read_glb(painted / "ball.glb")
+    original = read_textured_obj(painted / "11_object/surface/textured/mesh.obj")
+    np.testing.assert_array_equal(found["image"], original.image)
+    assert len(found["indices"]) == 3 * 80
+    by_trimesh = trimesh.load(painted / "ball.glb", force="mesh", process=False)
+    np.testing.assert_array_equal(found["indices"].reshape(-1, 3), by_trimesh.faces)
+    np.testing.assert_allclose(found["POSITION"], by_trimesh.vertices, atol=1e-6)
+    height, width = original.image.shape[:2]
+    texels = found["TEXCOORD_0"][found["indices"]].reshape(-1, 3, 2) * [width, height] - 0.5
+    np.testing.assert_allclose(np.sort(texels, axis=None), np.sort(original.corners, axis=None), atol=1e-3)
+
+
+def test_a_coloured_glb_keeps_to_the_standard(results):
+    path = results / "11_object/surface/mesh.ply"
+    mesh = read_mesh(path)
+    colors = np.random.default_rng(0).integers(0, 256, (len(mesh.vertices), 3)).astype(np.uint8)
+    write_colored_mesh(path, mesh, colors)
+    export(results, "40", results / "ball.glb")
+    (found,) = read_glb(results / "ball.glb")
+    np.testing.assert_array_equal(found["COLOR_0"][:, :3], colors)
+    assert found["POSITION"][:, 1].min() == pytest.approx(0, abs=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "what"),
+    [
+        (b'"count":240', b'"count":999', "accessor too long"),
+        (b"glTF\x02", b"glTF\x01", "header"),
+        (b'"POSITION":', b'"POSITIVE":', "POSITION"),
+    ],
+)
+def test_the_reader_of_glb_finds_faults(painted, old, new, what):
+    export(painted, "40", painted / "ball.glb")
+    data = (painted / "ball.glb").read_bytes()
+    assert old in data
+    (painted / "ball.glb").write_bytes(data.replace(old, new))
+    with pytest.raises((NotGltf, KeyError), match=what):
+        read_glb(painted / "ball.glb")
+
+
+def test_the_reader_of_glb_finds_an_index_out_of_range(painted):
+    export(painted, "40", painted / "ball.glb")
+    data = bytearray((painted / "ball.glb").read_bytes())
+    indices = read_glb(painted / "ball.glb")[0]["indices"]
+    place = data.index(indices.tobytes())
+    data[place : place + indices.itemsize] = np.array([60000], indices.dtype).tobytes()
+    (painted / "ball.glb").write_bytes(data)
+    with pytest.raises(NotGltf):
+        read_glb(painted / "ball.glb")
+
+
+@pytest.fixture
+def fine(results):
+    """The ball with 81920 faces, white above and black below."""
+    ball = trimesh.creation.icosphere(subdivisions=6)
+    colors = np.where(ball.vertices[:, 2:] > 0, 255, 0).repeat(3, axis=1).astype(np.uint8)
+    write_colored_mesh(results / "11_object/surface/mesh.ply", Mesh(ball.vertices, ball.faces), colors)
+    return results
+
+
+def test_levels_of_detail_are_closed_and_tell_their_error(fine):
+    """Property: a ball of diameter 40 inside of which the flat faces lie; their sagitta is known."""
+    export(fine, "40", fine / "full.stl")
+    full = trimesh.load(fine / "full.stl")
+    levels = export_levels(fine, "40", fine / "ball.stl", [1000, 10000])
+    assert [path.name for path in levels] == ["ball_1000.stl", "ball_10000.stl"]
+    for count, (path, level) in zip((1000, 10000), levels.items(), strict=True):
+        found = trimesh.load(path)
+        assert 0.7 * count < len(found.faces) <= count and len(found.faces) == len(level.mesh.faces)
+        assert found.is_watertight and found.volume == pytest.approx(4 / 3 * np.pi * 20**3, rel=20 / count)
+        assert 0 < level.mean_error < level.largest_error < 0.6
+        # its faces lie inside: what is missing of the volume is the mean distance times the area
+        missing = (full.volume - found.volume) / full.area
+        assert level.mean_error == pytest.approx(missing, rel=0.2)
+
+
+def test_levels_have_the_colours_of_the_mesh_and_one_has_the_name_given(fine):
+    export_levels(fine, "0.04", fine / "ball.glb", [2000])
+    (found,) = read_glb(fine / "ball.glb")
+    dark = found["COLOR_0"][:, 0] == 0
+    assert 0.3 < dark.mean() < 0.7 and set(np.unique(found["COLOR_0"][:, :3])) == {0, 255}
+    assert found["POSITION"][:, 1].max() == pytest.approx(0.04, rel=1e-2)
+
+
+def test_a_mesh_with_few_faces_stays_what_it_is(results):
+    levels = export_levels(results, "40", results / "ball.stl", [5000])
+    export(results, "40", results / "full.stl")
+    assert (results / "ball.stl").read_bytes() == (results / "full.stl").read_bytes()
+    assert levels[results / "ball.stl"].largest_error == 0
+
+
+def test_a_mesh_with_a_hole_has_no_levels(results):
+    path = results / "11_object/surface/mesh.ply"
+    mesh = read_mesh(path)
+    write_mesh(path, Mesh(mesh.vertices, mesh.faces[1:]))
+    with pytest.raises(UserError, match="expected a closed mesh"):
+        export_levels(results, "40", results / "ball.stl", [100])
+    assert not list(results.glob("ball*"))
+
+
+def test_the_command_tells_faces_and_error_and_refuses_none(fine, capsys):
+    words = ["export", str(fine), str(fine / "ball.stl"), "--height", "40mm", "--faces"]
+    assert main([*words, "500,4000"]) == 0
+    told = capsys.readouterr().out.splitlines()
+    assert len(told) == 2 and all("faces, closed; the full mesh is" in line for line in told)
+    for wrong in ("99", "many", "500,", "-500"):
+        with pytest.raises(SystemExit):
+            main([*words, wrong])
+        assert "expected whole numbers of at least 100" in capsys.readouterr().err

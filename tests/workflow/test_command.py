@@ -122,9 +122,13 @@ def test_a_job_that_fails_ends_in_its_sentence(call, project, tmp_path):
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_an_interrupted_run_says_how_to_go_on_and_leaves_nobody(project, tmp_path, how):
+def test_an_interrupted_run_says_how_to_go_on_leaves_nobody_and_is_resumed(project, call, tmp_path, how):
+    """Exact: after the same command once more all is as if it had not been stopped."""
     (tmp_path / "mug.mp4").write_text("film")
-    project.edit("src/threedfs/stages/poses.py", "    write(", "    import time\n    time.sleep(60)\n    write(")
+    slow = tmp_path / "slow"
+    slow.touch()
+    waiting = f"    import time\n    time.sleep(60 if Path({str(slow)!r}).exists() else 0)\n    write("
+    project.edit("src/threedfs/stages/poses.py", "    write(", waiting)
     running = subprocess.Popen(
         [sys.executable, "-m", "threedfs.cli.main", "run", "mug.mp4"],
         cwd=tmp_path,
@@ -139,10 +143,29 @@ def test_an_interrupted_run_says_how_to_go_on_and_leaves_nobody(project, tmp_pat
     running.send_signal(how)
     output = running.communicate(timeout=60)[0]
     assert running.returncode == 130
-    assert output.rstrip().splitlines()[-1] == (
-        "threedfs: not finished; the same command goes on where it was stopped."
-    )
+    said = output.rstrip().splitlines()
+    assert said[-1] == "threedfs: not finished; the same command goes on where it was stopped."
+    assert "Traceback" not in output and output.count("not finished") == 1
+    until = time.monotonic() + 5
+    while _processes_in(tmp_path) and time.monotonic() < until:
+        time.sleep(0.2)
     assert not _processes_in(tmp_path)
+    if how != signal.SIGINT:  # what is left behind is the same
+        return
+    slow.unlink()
+    status, output = call("run", "mug.mp4")
+    assert status == 0, output
+    log = (tmp_path / "results/logs/run.txt").read_text()
+    assert "poses of mug: done in" in log and "(Rule: frames)" not in log
+    assert call("run", "mug.mp4", "--out", "whole")[0] == 0
+    assert _artifacts(tmp_path) == _artifacts(tmp_path / "whole")
+
+
+def _artifacts(folder):
+    """Read a sequence's results by name, without what tells times."""
+    own = (path for path in (folder / "results/mug").rglob("*") if path.is_file())
+    kept = (path for path in own if not {"logs", "benchmarks", "report.html"} & set(path.parts))
+    return {path.relative_to(folder).as_posix(): path.read_bytes() for path in kept}
 
 
 def _processes_in(folder):

@@ -9,7 +9,9 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from threedfs.cli import store
-from threedfs.cli.request import INTERRUPTED, QUALITIES, count_cores, read_height
+from threedfs.cli.clean import add_clean
+from threedfs.cli.export import add_export
+from threedfs.cli.request import INTERRUPTED, QUALITIES, count_cores
 from threedfs.errors import UserError
 
 _METHODS = {
@@ -69,13 +71,8 @@ def _make_parser() -> argparse.ArgumentParser:
     show.add_argument("results", type=Path, help="its folder, as results/my")
     show.set_defaults(act=_show)
 
-    export = actions.add_parser("export", help="write a mesh upright and to scale, as stl, ply, obj or glb")
-    export.add_argument("results", type=Path, help="folder of a sequence, as results/my")
-    export.add_argument("file", type=Path, help="a mesh to write, its ending tells the format; or a folder")
-    export.add_argument("--height", help="true height, as 95mm; written in mm, in metres to glb")
-    export.add_argument("--scene", action="store_true", help="write frames, masks, cameras for other tools")
-    export.add_argument("--method", default="surface", help="whose mesh (surface)")
-    export.set_defaults(act=_export)
+    add_export(actions)
+    add_clean(actions)
 
     score = actions.add_parser("score", help="score masks, a mesh or cameras of any program against a truth")
     for what, form in (("masks", "folder of PNG"), ("mesh", "ply, obj, stl or glb"), ("cameras", "as the truth's")):
@@ -106,25 +103,6 @@ def _show(arguments: argparse.Namespace) -> int:
         )
     print(page)
     webbrowser.open(page.as_uri())
-    return 0
-
-
-def _export(arguments: argparse.Namespace) -> int:
-    from threedfs.run_end.export import export
-
-    if arguments.scene and arguments.height:
-        raise UserError("export: expected --scene or --height, got both; a scene is written in scene units.")
-    if arguments.scene:
-        from threedfs.run_end.export_scene import export_scene
-
-        count = export_scene(arguments.results, arguments.file, arguments.method)
-        print(f"{arguments.file}: {count} frames, their masks and cameras, in scene units")
-        return 0
-    if arguments.height is None:
-        raise UserError("export: expected --height, the object's true height, or --scene, got neither.")
-    size = read_height(arguments.height) / (1000 if arguments.file.suffix.lower() == ".glb" else 1)
-    export(arguments.results, str(size), arguments.file, arguments.method)
-    print(arguments.file)
     return 0
 
 

@@ -1,126 +1,168 @@
-"""How far a run has come, read from what Snakemake and the jobs say."""
+"""How far a run has come and how long it will take, read from what Snakemake and the jobs say."""
 
 from __future__ import annotations
 
 import re
 import sys
 import time
-from collections.abc import Mapping
+from collections import defaultdict
+from collections.abc import Callable
+from dataclasses import replace
+from statistics import mean
 from typing import TextIO
 
-_NORMAL = {
-    "frames": (6,),
-    "features": (7,),
-    "poses": (16,),
-    "keyframes": (2,),
-    "shrink": (4,),
-    "scout": (5,),
-    "depth": (10, 50),
-    "consistency": (4, 13),
-    "fuse_scene": (5,),
-    "locate": (15,),
-    "crops": (10,),
-    "cues": (17,),
-    "fuse_object": (8,),
-    "locate_object": (2,),
-    "segment": (20,),
-    "cut_object": (6,),
-    "pixel_masks": (6,),
-    "surface": (31,),
-    "texture": (10,),
-    "photographs": (5,),
-    "evaluate": (3,),
-    "evaluate_reconstruction": (2,),
-}
-"""Seconds of a rule's first, second, ... job on a phone video with 24 keyframes, on two cores; shares alone count."""
-_DRAFT = {
-    **{"frames": (5,), "features": (5,), "poses": (14,), "shrink": (3,), "scout": (4,), "depth": (5, 6)},
-    **{"consistency": (3,), "fuse_scene": (3,), "locate": (5,), "crops": (6.5,), "cues": (4,), "fuse_object": (3,)},
-    **{"segment": (8,), "pixel_masks": (5,), "surface": (9,), "texture": (4,), "photographs": (3,), "evaluate": (2.5,)},
-}
-SECONDS = {"draft": {**_NORMAL, **_DRAFT}, "normal": _NORMAL, "fine": _NORMAL}
-"""The same by quality."""
-_OTHER = 5.0
+from threedfs.cli.costs import Costs, Size
+
+_TRUST = 10.0
+"""Seconds of work that the costs known before weigh as much as, beside the speed seen in the run."""
 _EARLIEST = 0.04
 """Share of the work after which the time that is left is told."""
+_TAKEN = 1.0
+"""Seconds of a job that finds its results in the store."""
+_UNCOUNTED = ("all", "collect")
 
 _COUNT = re.compile(r"^(\w+)\s+(\d+)$")
 _FINISHED = re.compile(r"^Finished jobid: \d+ \(Rule: (\w+)\)")
 _SAYS = re.compile(r"^(\w+) of (\S+)[^:]*: (.*)$")
-_PART = re.compile(r"(\d+)/(\d+)\)?$")
+# keyframes of a job that works on each of them, or the frames of a video: the whole of a job, not a phase of it
+_PART = re.compile(r"(?:^source frame |\()(\d+)/(\d+)\)?$")
+_FRAMES = re.compile(r"^(\d+) of \d+ frames taken")
+_KEYFRAMES = re.compile(r"^(\d+) keyframes of")
+_FROM_STORE = "taken from the store"
 
 
 class Progress:
     """Follows the output of a run line by line.
 
+    The time that is left is the cost of the jobs that are left, by their rule and the size of the input, over the speed
+    that the run has had so far; jobs that found their results in the store count for neither.
+
     Parameters
     ----------
-    seconds : mapping of str to tuple of float
-        Of each rule's jobs, as in `SECONDS`.
+    costs : Costs
     stream : text stream
-        Where progress is shown: one line, written over and over, on a terminal; else a line for each tenth.
+        Where progress is shown: one line, written over and over, on a terminal; else a line for each tenth of the work.
+    journal : text stream, optional
+        Gets such lines in any case.
+    measure : callable, optional
+        Returns the size of a sequence's input by its name, asked after jobs that tell it.
+    clock : callable
+        Tells the time in seconds.
     """
 
-    def __init__(self, seconds: Mapping[str, tuple[float, ...]], stream: TextIO = sys.stderr) -> None:
-        self._seconds = seconds
+    def __init__(
+        self,
+        costs: Costs,
+        stream: TextIO = sys.stderr,
+        journal: TextIO | None = None,
+        measure: Callable[[str], Size] | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._costs, self._measure, self._clock = costs, measure, clock
         self._stream, self._live = stream, stream.isatty()
-        self._begun, self._shown, self._told = time.monotonic(), 0.0, 0.0
-        self._left: dict[str, list[float]] = {}
-        self._all = self._done = self._part = 0.0
+        self._journals = [each for each in (journal, None if self._live else stream) if each]
+        self._begun, self._shown, self._told = clock(), 0.0, 0.0
+        self._planned: dict[str, int] = {}
+        self._worked: dict[str, list[float]] = defaultdict(list)  # of each finished job, the share not from the store
+        self._parts: dict[str, dict[str, float]] = defaultdict(dict)  # of jobs under way, by rule and sequence
+        self._taken: dict[str, list[bool]] = defaultdict(list)  # of what a rule's jobs have told, what was in the store
+        self._sizes: dict[str, Size] = defaultdict(Size)
         self._stage, self._listing = "starting", False
 
     @property
     def share(self) -> float:
         """Of the work that is done, in [0, 1]."""
-        return min(1.0, (self._done + self._part) / self._all) if self._all else 0.0
+        done, left = self._weigh()
+        return done / (done + left) if done + left else 0.0
 
     def left(self) -> float | None:
         """Return the seconds that are left, None while nothing is known of them."""
-        share = self.share
-        return None if share < _EARLIEST else (time.monotonic() - self._begun) * (1 - share) / share
+        done, left = self._weigh()
+        if not done or done < _EARLIEST * (done + left):
+            return None
+        return left * (_TRUST + self.elapsed) / (_TRUST + done)
+
+    @property
+    def elapsed(self) -> float:
+        """Seconds since the run began."""
+        return self._clock() - self._begun
+
+    def _weigh(self) -> tuple[float, float]:
+        """Return the cost of what is done and of what is left, seconds at the speed of the costs known before."""
+        done = left = 0.0
+        size = self._size()
+        for rule, count in self._planned.items():
+            worked = self._worked[rule]
+            each = self._costs.expect(rule, max(count, len(worked)), size)
+            done += sum(max(_TAKEN, cost * own) for cost, own in zip(each, worked, strict=False))
+            ahead = each[len(worked) :]
+            parts = sorted(self._parts[rule].values(), reverse=True)[: len(ahead)]
+            begun = sum(cost * part for cost, part in zip(ahead, parts, strict=False))
+            done, left = done + begun, left + sum(ahead) - begun
+        return done, left
+
+    def _size(self) -> Size:
+        """Return what is known of the sequences, in the mean."""
+        known = {name: [getattr(size, name) for size in self._sizes.values()] for name in Size.__dataclass_fields__}
+        present = {name: [value for value in values if value] for name, values in known.items()}
+        return Size(**{name: mean(values) for name, values in present.items() if values})
 
     def follow(self, line: str) -> None:
         """Take one line of the run's output."""
         if line.startswith("Job stats:"):
-            self._listing, self._left, self._all, self._done = True, {}, 0.0, 0.0
+            self._listing, self._planned = True, {}
+            self._worked.clear()
         elif self._listing and (match := _COUNT.match(line)):
-            self._expect(match[1], int(match[2]))
+            if match[1] == "total":
+                self._listing = False
+            elif match[1] not in _UNCOUNTED:
+                self._planned[match[1]] = int(match[2])
         elif match := _FINISHED.match(line):
-            left = self._left.get(match[1])
-            self._done += left.pop(0) if left else 0.0
-            self._part = 0.0
+            self._finish(match[1])
         elif match := _SAYS.match(line):
-            self._stage = match[1]
-            part = _PART.search(match[3])
-            left = self._left.get(match[1])
-            if part and left and int(part[2]):
-                self._part = left[0] * min(1.0, int(part[1]) / int(part[2]))
+            self._listen(*match.groups())
         self.show()
 
-    def _expect(self, rule: str, count: int) -> None:
-        if rule == "total":
-            self._listing = False
-        elif rule not in ("all", "collect"):
-            each = self._seconds.get(rule, (_OTHER,))
-            self._left[rule] = [float(each[min(rank * len(each) // count, len(each) - 1)]) for rank in range(count)]
-            self._all += sum(self._left[rule])
+    def _finish(self, rule: str) -> None:
+        told = self._taken.pop(rule, [])
+        if rule in self._planned:
+            self._worked[rule].append(1 - sum(told) / len(told) if told else 1.0)
+        if parts := self._parts[rule]:
+            del parts[max(parts, key=parts.get)]
+
+    def _listen(self, stage: str, sequence: str, message: str) -> None:
+        """Take what a job says of itself."""
+        self._stage = stage
+        size = self._sizes[sequence]
+        if match := _FRAMES.match(message):
+            self._sizes[sequence] = replace(size, frames=float(match[1]))
+        elif match := _KEYFRAMES.match(message):
+            self._sizes[sequence] = replace(size, keyframes=float(match[1]))
+        if match := _PART.search(message):
+            self._parts[stage][sequence] = min(1.0, int(match[1]) / max(1, int(match[2])))
+        if message.startswith((_FROM_STORE, "done in")):
+            self._taken[stage].append(message.startswith(_FROM_STORE))
+            if stage == "crops" and self._measure:
+                measured = {name: value for name, value in vars(self._measure(sequence)).items() if value}
+                self._sizes[sequence] = replace(self._sizes[sequence], **measured)
 
     def show(self, last: bool = False) -> None:
         """Show how far the run has come, if it is time to."""
-        now, share = time.monotonic(), self.share
+        now, share = self._clock(), self.share
         if self._live and (last or now - self._shown > 0.5):
             self._shown = now
             self._stream.write(f"\r\033[K{self._describe()}" + ("\n" if last else ""))
             self._stream.flush()
-        elif not self._live and not last and share >= self._told + 0.1:
+        if not last and share >= self._told + 0.1:
             self._told = share
-            self._stream.write(f"{self._describe()}\n")
-            self._stream.flush()
+            for journal in self._journals:
+                journal.write(f"{self._describe()}\n")
+                journal.flush()
 
     def _describe(self) -> str:
         left = self.left()
         rest = "" if left is None else f", about {tell_time(left)} left"
-        return f"{self.share:4.0%}  {tell_time(time.monotonic() - self._begun)}{rest}  {self._stage}"
+        return f"{self.share:4.0%}  {tell_time(self.elapsed)}{rest}  {self._stage}"
 
 
 def tell_time(seconds: float) -> str:

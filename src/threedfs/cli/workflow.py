@@ -17,8 +17,9 @@ from typing import Any, TextIO
 
 import yaml
 
+from threedfs.cli.earlier import find_costs, measure_size
 from threedfs.cli.home import find_home
-from threedfs.cli.progress import SECONDS, Progress
+from threedfs.cli.progress import Progress
 from threedfs.cli.request import Request, make_configuration
 from threedfs.errors import UserError
 
@@ -79,14 +80,20 @@ def run_workflow(
     preset = [] if quality == "normal" else [str(home / "config/presets" / f"{quality}.yaml")]
     try:
         log.parent.mkdir(parents=True, exist_ok=True)
-        with _claim(out), open(log, "w", encoding="utf-8") as file:
+        with (
+            claim(out),
+            open(log, "w", encoding="utf-8") as file,
+            open(log.with_name("progress.txt"), "w", encoding="utf-8") as journal,
+        ):
             asked = [_write_request(request, changes, out) for request in requests]
             command = [
                 *(sys.executable, "-m", "snakemake", "--snakefile", str(home / "Snakefile"), "--directory", str(out)),
                 *("--workflow-profile", str(home / "profiles/default")),
                 *("--cores", str(cores), "--keep-going", "--configfile", *preset, *map(str, asked)),
             ]
-            status, interrupted, said = _follow(command, file, Progress(SECONDS[quality]))
+            costs = find_costs(out, quality, _merge([home / "config/config.yaml", *map(Path, preset)], changes), cores)
+            progress = Progress(costs, journal=journal, measure=lambda name: measure_size(out / "results" / name))
+            status, interrupted, said = _follow(command, file, progress)
     except OSError as fault:
         raise UserError(f"--out: expected a folder to write results to, got {out}: {fault.strerror}.") from None
     faults = dict.fromkeys(line.removeprefix("threedfs: ") for line in said if _FAULT.match(line))
@@ -94,8 +101,14 @@ def run_workflow(
 
 
 @contextmanager
-def _claim(out: Path) -> Iterator[None]:
-    """Keep other commands out of a folder."""
+def claim(out: Path) -> Iterator[None]:
+    """Keep other commands out of a folder.
+
+    Raises
+    ------
+    UserError
+        If one is at work in it.
+    """
     with open(out / "results/logs/run.lock", "w") as lock:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
@@ -117,6 +130,16 @@ def _write_request(request: Request, changes: Mapping[str, Any], out: Path) -> P
     path.parent.mkdir(parents=True, exist_ok=True)
     path.write_text(yaml.safe_dump(make_configuration([request], changes), sort_keys=False), encoding="utf-8")
     return path
+
+
+def _merge(files: Sequence[Path], changes: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the configuration that Snakemake will make of files and changes."""
+    config: dict[str, Any] = {}
+    for part in (*(yaml.safe_load(file.read_text(encoding="utf-8")) for file in files), changes):
+        for key, value in part.items():
+            both = isinstance(value, dict) and isinstance(config.get(key), dict)
+            config[key] = config[key] | value if both else value
+    return config
 
 
 def _follow(command: Sequence[str], log: TextIO, progress: Progress) -> tuple[int, bool, list[str]]:

@@ -8,14 +8,18 @@ The format is that of the file's ending: stl, ply, obj or glb. METHOD is surface
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+
+from scipy.spatial import cKDTree
 
 from threedfs.errors import UserError
 from threedfs.io.colored_meshes import read_colored_mesh, write_colored_mesh
 from threedfs.io.textured_meshes import read_textured_obj, write_textured_glb, write_textured_obj
 from threedfs.io.volumes import read_support
 from threedfs.object.stand import stand_up, turn_y_up
+from threedfs.texture.levels import Level, make_levels
 from threedfs.types import Mesh
 
 _FORMATS = (".stl", ".ply", ".obj", ".glb")
@@ -42,6 +46,63 @@ def export(sequence: Path, height: str, file: Path, method: str = "surface") -> 
     UserError
         If there is no such mesh, the height is no positive number, or the format is not known.
     """
+    path, place = _prepare(sequence, height, file, method)
+    textured, kind = path.parent / "textured" / "mesh.obj", file.suffix.lower()
+    if kind in _TEXTURED and textured.is_file():
+        painted = read_textured_obj(textured)
+        _TEXTURED[kind](file, replace(painted, mesh=place(painted.mesh)))
+    else:
+        mesh, colors = read_colored_mesh(path)
+        write_colored_mesh(file, place(mesh), colors)
+
+
+def export_levels(
+    sequence: Path, height: str, file: Path, faces: Sequence[int], method: str = "surface"
+) -> dict[Path, Level]:
+    """Write a sequence's mesh with fewer faces, as `export` does it, with the colours of its vertices and no texture.
+
+    Parameters
+    ----------
+    sequence : Path
+        Folder of its results.
+    height : str
+        A positive number, in the unit that the files are to have.
+    file : Path
+        NAME.ENDING for one number of faces; of several, each has a file NAME_FACES.ENDING of its own.
+    faces : sequence of int
+        The most that each mesh is to have.
+    method : str
+        Whose mesh it is.
+
+    Returns
+    -------
+    dict of Path to Level
+        By file, in the unit of the files.
+
+    Raises
+    ------
+    UserError
+        As `export`, or if the mesh is not closed.
+    """
+    path, place = _prepare(sequence, height, file, method)
+    full, colors = read_colored_mesh(path)
+    placed = place(full)
+    levels = make_levels(placed, faces)
+    if levels is None:
+        raise UserError(f"{path}: expected a closed mesh to take faces from, got one that is not; leave --faces out.")
+    nearest = cKDTree(placed.vertices)
+    written = {}
+    for count in dict.fromkeys(faces):
+        own = file.with_name(f"{file.stem}_{count}{file.suffix}") if len(set(faces)) > 1 else file
+        mesh = levels[count].mesh
+        shades = None if colors is None else colors[nearest.query(mesh.vertices)[1]]
+        write_colored_mesh(own, mesh, shades)
+        written[own] = levels[count]
+    return written
+
+
+def _prepare(sequence: Path, height: str, file: Path, method: str) -> tuple[Path, Callable[[Mesh], Mesh]]:
+    """Return the path of a mesh, and what puts it upright and to scale for a file."""
     try:
         size = float(height)
     except ValueError:
@@ -62,13 +123,7 @@ def export(sequence: Path, height: str, file: Path, method: str = "surface") -> 
         upright = stand_up(mesh, plane, size)
         return turn_y_up(upright) if kind == ".glb" else upright
 
-    textured = path.parent / "textured" / "mesh.obj"
-    if kind in _TEXTURED and textured.is_file():
-        painted = read_textured_obj(textured)
-        _TEXTURED[kind](file, replace(painted, mesh=place(painted.mesh)))
-    else:
-        mesh, colors = read_colored_mesh(path)
-        write_colored_mesh(file, place(mesh), colors)
+    return path, place
 
 
 if __name__ == "__main__":

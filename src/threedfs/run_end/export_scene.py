@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -15,11 +15,12 @@ from threedfs.errors import UserError
 from threedfs.geometry.lens import Lens
 from threedfs.io.atomic import atomic
 from threedfs.io.frames import FrameStore, read_frames
-from threedfs.io.images import write_mask, write_png
+from threedfs.io.images import write_png
 from threedfs.io.meshes import read_mesh
 from threedfs.io.points import read_points
 from threedfs.io.poses import read_poses
 from threedfs.object.silhouettes import draw_silhouette
+from threedfs.run_end.export_masks import mask_path_of, write_masks
 from threedfs.types import Camera, Mesh, SparsePoints, View
 
 _CORNER = 0.5
@@ -28,13 +29,14 @@ _OPENGL = np.diag([1.0, -1.0, -1.0, 1.0])
 """From a camera that looks along z with y down to one that looks against z with y up."""
 
 
-def export_scene(sequence: Path, folder: Path, method: str = "surface") -> int:
+def export_scene(
+    sequence: Path, folder: Path, method: str = "surface", masks: Collection[str] = ("colmap", "nerfstudio")
+) -> int:
     """Write every working frame that has a pose, with its camera and its mask; return how many they are.
 
-    `images/NAME.png` are the frames without distortion, `masks/NAME.png.png` the object in them (white), drawn from the
-    mesh: COLMAP takes that folder as its `mask_path`. `sparse/0` is a COLMAP model in text with the sparse points,
-    `transforms.json` the same cameras for nerfstudio and its kin, with `mask_path`. All in scene units. Files that are
-    in the way are replaced, others stay.
+    `images/NAME.png` are the frames without distortion; their masks are drawn from the mesh, and written as
+    `write_masks` says. `sparse/0` is a COLMAP model in text with the sparse points, `transforms.json` the same cameras
+    for nerfstudio and its kin. All in scene units. Files that are in the way are replaced, others stay.
 
     Parameters
     ----------
@@ -44,6 +46,8 @@ def export_scene(sequence: Path, folder: Path, method: str = "surface") -> int:
         Made if it is not there.
     method : str
         Whose mesh the masks are drawn from.
+    masks : collection of str
+        Of `MASKS`: whom they are written for.
 
     Raises
     ------
@@ -60,9 +64,9 @@ def export_scene(sequence: Path, folder: Path, method: str = "surface") -> int:
             raise UserError(f"{path}: expected {what} of a run, found none; correct {sequence}, or run it first.")
     posed, mesh = read_poses(places["cameras"]), read_mesh(sequence / "11_object" / method / "mesh.ply")
     names = name_files([view.name for view in posed.views])
-    _write_images(folder, names, posed.views, posed.distortion, read_frames(places["frames"]), mesh)
+    _write_images(folder, names, posed.views, posed.distortion, read_frames(places["frames"]), mesh, masks)
     _write_model(folder / "sparse/0", names, posed.views, read_points(sequence / "02_poses/points.zarr.zip"))
-    _write_json(folder / "transforms.json", _describe_transforms(names, posed.views))
+    _write_json(folder / "transforms.json", _describe_transforms(names, posed.views, "nerfstudio" in masks))
     return len(posed.views)
 
 
@@ -92,11 +96,12 @@ def _write_images(
     distortion: tuple[float, float],
     frames: FrameStore,
     mesh: Mesh,
+    masks: Collection[str],
 ) -> None:
     for view in views:
         image, valid = resample(frames.image(view.name), Lens(view.camera, *distortion), view.camera)
         write_png(folder / "images" / names[view.name], image)
-        write_mask(folder / "masks" / f"{names[view.name]}.png", draw_silhouette(mesh, view) & valid)
+        write_masks(folder, names[view.name], image, draw_silhouette(mesh, view) & valid, masks)
 
 
 def _write_model(folder: Path, names: Mapping[str, str], views: Sequence[View], points: SparsePoints) -> None:
@@ -124,14 +129,14 @@ def _write_model(folder: Path, names: Mapping[str, str], views: Sequence[View], 
             temporary.write_text("\n".join(lines) + "\n", encoding="utf-8")
 
 
-def _describe_transforms(names: Mapping[str, str], views: Sequence[View]) -> dict:
+def _describe_transforms(names: Mapping[str, str], views: Sequence[View], masked: bool) -> dict:
     frames = []
     for view in views:
         camera = view.camera
         frames.append(
             {
                 "file_path": f"images/{names[view.name]}",
-                "mask_path": f"masks/{names[view.name]}.png",
+                **({"mask_path": mask_path_of(names[view.name])} if masked else {}),
                 "transform_matrix": (np.linalg.inv(view.cam_from_world) @ _OPENGL).tolist(),
                 **{"w": camera.width, "h": camera.height, "fl_x": camera.fx, "fl_y": camera.fy},
                 **{"cx": camera.cx + _CORNER, "cy": camera.cy + _CORNER},

@@ -2,13 +2,37 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from threedfs.evaluate.scores import Failure
-from threedfs.store.records import BadRecord, is_digest, read_record
+from threedfs.store.records import BadRecord, is_digest, read_record, record_path
 
 _DONE = "action "
 _REFUSED = "threedfs: "
+
+
+@dataclass(frozen=True)
+class Action:
+    """What was done once, also if a job then took it from the store.
+
+    Attributes
+    ----------
+    rule : str
+        Of the job, by the place of its log.
+    key : str
+    record : mapping
+        Of the store.
+    recorded : float
+        When it was done, seconds since the epoch.
+    """
+
+    rule: str
+    key: str
+    record: Mapping[str, Any]
+    recorded: float
 
 
 def find_failures(results: Path, since: float) -> list[Failure]:
@@ -37,26 +61,39 @@ def find_failures(results: Path, since: float) -> list[Failure]:
     return failures
 
 
-def read_actions(folder: Path, store: Path) -> list[dict]:
+def read_actions(folder: Path, store: Path) -> list[Mapping[str, Any]]:
     """Read the records of the actions that the jobs of a sequence did, which their logs name."""
-    lines = (line for log in _find_logs(folder) for line in _read_lines(log))
-    keys = sorted(line.removeprefix(_DONE) for line in lines if line.startswith(_DONE))
-    records = (_read_record(store, key) for key in keys)
-    return [record for record in records if record is not None]
+    actions = sorted((action for job in read_jobs(folder, store) for action in job), key=lambda action: action.key)
+    return [action.record for action in actions]
 
 
 def read_keys(folder: Path) -> set[str]:
     """Return the keys of the actions that the jobs of a sequence did, which their logs name."""
-    lines = (line for log in _find_logs(folder) for line in _read_lines(log))
-    return {key for line in lines if line.startswith(_DONE) and is_digest(key := line.removeprefix(_DONE))}
+    return {key for log in _find_logs(folder) for key in _read_keys(log)}
 
 
-def _read_record(store: Path, key: str) -> dict | None:
-    """Read a record; one that is damaged tells no costs."""
-    try:
-        return read_record(store, key) if is_digest(key) else None
-    except BadRecord:
-        return None
+def read_jobs(folder: Path, store: Path) -> list[list[Action]]:
+    """Read the actions that each job of a sequence did, those of the scene pass first; damaged records tell nothing."""
+    jobs = []
+    for log in _find_logs(folder):
+        rule = log.relative_to(folder).as_posix().rpartition("logs/")[2].removesuffix(".log").partition("/")[0]
+        jobs.append(list(_read_actions(rule, _read_keys(log), store)))
+    return [job for job in jobs if job]
+
+
+def _read_keys(log: Path) -> list[str]:
+    keys = [line.removeprefix(_DONE) for line in _read_lines(log) if line.startswith(_DONE)]
+    return [key for key in keys if is_digest(key)]
+
+
+def _read_actions(rule: str, keys: list[str], store: Path) -> Iterator[Action]:
+    for key in keys:
+        try:
+            record = read_record(store, key)
+            if record is not None:
+                yield Action(rule, key, record, record_path(store, key).stat().st_mtime)
+        except (BadRecord, OSError):
+            continue
 
 
 def _read_refusal(line: str, sequence: str, item: str) -> Failure:

@@ -1,0 +1,136 @@
+"""What the jobs of a run cost, by the size of the input; measured for the project."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+
+
+@dataclass(frozen=True)
+class Size:
+    """How large an input is; None where that is not known yet.
+
+    Attributes
+    ----------
+    frames, keyframes : float or None
+    pixels : float or None
+        Of a keyframe's crop, in the mean.
+    """
+
+    frames: float | None = None
+    keyframes: float | None = None
+    pixels: float | None = None
+
+    def growth(self, other: Size, names: Sequence[str]) -> float:
+        """Return how many times as large another input is, by the product of some fields; what is unknown is as here.
+
+        Examples
+        --------
+        >>> Size(100, 24).growth(Size(50, 12), ("frames", "keyframes"))
+        0.25
+        """
+        factor = 1.0
+        for name in names:
+            mine, theirs = getattr(self, name), getattr(other, name)
+            factor *= theirs / mine if mine and theirs else 1.0
+        return factor
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Wall time of a job.
+
+    Attributes
+    ----------
+    seconds : float
+        With kernels that are compiled.
+    compiling : float
+        What compiling them adds, seconds.
+    grows : tuple of str
+        Fields of `Size` that the seconds are proportional to.
+    """
+
+    seconds: float
+    compiling: float = 0.0
+    grows: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Costs:
+    """What the jobs of a run cost on an input of a known size.
+
+    Attributes
+    ----------
+    jobs : mapping of str to tuple of Cost
+        Of a rule's first, second, ... job for one sequence.
+    size : Size
+    cold : bool
+        Whether kernels have yet to be compiled.
+    """
+
+    jobs: Mapping[str, tuple[Cost, ...]]
+    size: Size
+    cold: bool = False
+
+    def expect(self, rule: str, count: int, size: Size) -> list[float]:
+        """Return the seconds of the `count` jobs of a rule in a run, in their order, on inputs of a size."""
+        known = self.jobs.get(rule, (_OTHER,))
+        places = [min(rank * len(known) // count, len(known) - 1) for rank in range(count)]
+        return [
+            self._grow(known[place], size) + (known[place].compiling if self.cold and place not in places[:rank] else 0)
+            for rank, place in enumerate(places)
+        ]
+
+    def _grow(self, cost: Cost, size: Size) -> float:
+        return cost.seconds * self.size.growth(size, cost.grows)
+
+    def with_seconds(self, seconds: Mapping[str, Sequence[float]]) -> Costs:
+        """Return the same with other seconds for the jobs of some rules, as many as they have."""
+        changed = {
+            rule: tuple(replace(cost, seconds=float(own)) for cost, own in zip(self.jobs[rule], each, strict=True))
+            for rule, each in seconds.items()
+        }
+        return replace(self, jobs={**self.jobs, **changed})
+
+
+_F, _K, _P = ("frames",), ("keyframes",), ("keyframes", "pixels")
+_OTHER = Cost(5.0)
+_NORMAL = {
+    "frames": (Cost(7.0, grows=_F),),
+    "features": (Cost(5.0, grows=_F),),
+    "poses": (Cost(18.0, 11.0, _F),),
+    "keyframes": (Cost(2.0),),
+    "shrink": (Cost(4.0),),
+    "scout": (Cost(6.0, 7.0, _K),),
+    "depth": (Cost(10.0, 13.0, _K), Cost(32.0, 7.0, _P)),
+    "consistency": (Cost(3.0, 4.0, _K), Cost(9.0, grows=_P)),
+    "fuse_scene": (Cost(5.0, 4.0, _K),),
+    "locate": (Cost(12.0, 12.0),),
+    "crops": (Cost(8.0, grows=_P),),
+    "cues": (Cost(17.0, 15.0, _K),),
+    "fuse_object": (Cost(7.0, 4.0, _K),),
+    "locate_object": (Cost(2.0),),
+    "segment": (Cost(17.0, 8.0, _K),),
+    "cut_object": (Cost(2.0, 4.0),),
+    "pixel_masks": (Cost(3.0),),
+    "surface": (Cost(31.0, 10.0),),
+    "texture": (Cost(4.0, 4.0),),
+    "photographs": (Cost(5.0),),
+    "evaluate": (Cost(3.0),),
+    "evaluate_reconstruction": (Cost(2.0),),
+}
+"""Measured on two cores of 2026, on two videos of 120 and 142 frames; what compiling adds, on the sample."""
+_DRAFT = {
+    **{"frames": (5,), "features": (4,), "poses": (10,), "shrink": (3,), "scout": (4,), "depth": (7, 8)},
+    **{"consistency": (3, 4), "fuse_scene": (3,), "locate": (3,), "crops": (3,), "cues": (8,), "fuse_object": (3,)},
+    **{"segment": (7,), "surface": (9,), "texture": (2,), "photographs": (3,)},
+}
+
+
+_MEASURED = Costs(_NORMAL, Size(130, 24, 300_000))
+MEASURED = {
+    "draft": replace(_MEASURED.with_seconds(_DRAFT), size=Size(72, 12, 80_000)),
+    "normal": _MEASURED,
+    "fine": _MEASURED.with_seconds({"surface": (58,)}),
+}
+"""By quality."""

@@ -1,0 +1,122 @@
+"""When each job of real runs on two cores ended, in seconds after the command began, as Snakemake logged it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from threedfs.cli.costs import Size
+
+
+@dataclass(frozen=True)
+class Recorded:
+    """A run.
+
+    Attributes
+    ----------
+    quality : str
+    cold : bool
+        Whether it had to compile all kernels.
+    size : Size
+    seconds : float
+        From its begin to its end.
+    taken : sequence of str
+        Rules whose results were in the store.
+    ends : str
+        Pairs RULE:SECOND in their order.
+    """
+
+    quality: str
+    cold: bool
+    size: Size
+    seconds: float
+    taken: Sequence[str]
+    ends: str
+
+    @property
+    def jobs(self) -> list[tuple[str, float]]:
+        """Rule and end of each job, seconds."""
+        pairs = (pair.split(":") for pair in self.ends.split())
+        return [(rule, float(end)) for rule, end in pairs]
+
+
+RUNS = {
+    "sample, kernels compiled": Recorded(
+        "normal",
+        True,
+        Size(120, 24, 182474),
+        290,
+        [],
+        """
+        frames:5 features:10 poses:42 keyframes:44 shrink:48 scout:61 depth:81 consistency:88 fuse_scene:97
+        locate:120 crops:125 cues:157 depth:180 evaluate_reconstruction:183 consistency:190 fuse_object:200
+        locate_object:201 segment:223 pixel_masks:227 evaluate:229 cut_object:233 evaluate:236 surface:274
+        evaluate:279 texture:285 photographs:289
+        """,
+    ),
+    "sample": Recorded(
+        "normal",
+        False,
+        Size(120, 24, 182474),
+        179,
+        [],
+        """
+        frames:6 features:10 poses:29 keyframes:31 shrink:35 scout:41 depth:48 consistency:51 fuse_scene:56
+        locate:66 crops:70 cues:86 depth:102 evaluate_reconstruction:105 consistency:111 fuse_object:117
+        locate_object:119 segment:133 pixel_masks:135 evaluate:138 cut_object:138 evaluate:141 surface:168
+        evaluate:172 texture:174 photographs:178
+        """,
+    ),
+    "sample, draft": Recorded(
+        "draft",
+        False,
+        Size(72, 12, 80000),
+        100,
+        [],
+        """
+        frames:4 features:8 poses:18 keyframes:20 shrink:23 scout:27 depth:34 consistency:37 fuse_scene:40
+        locate:43 crops:46 cues:54 depth:61 evaluate_reconstruction:64 consistency:68 fuse_object:71
+        locate_object:73 segment:80 pixel_masks:82 evaluate:84 surface:93 evaluate:97 texture:97
+        photographs:100
+        """,
+    ),
+    "sample, fine, cameras from the store": Recorded(
+        "fine",
+        False,
+        Size(120, 24, 182474),
+        201,
+        ["frames", "features", "poses"],
+        """
+        frames:3 features:3 poses:4 keyframes:6 shrink:9 scout:16 depth:25 consistency:28 fuse_scene:33
+        locate:43 crops:47 cues:61 depth:77 evaluate_reconstruction:80 consistency:85 fuse_object:94
+        locate_object:96 segment:114 pixel_masks:117 evaluate:118 cut_object:123 evaluate:127 surface:188
+        evaluate:194 texture:197 photographs:201
+        """,
+    ),
+    "phone video": Recorded(
+        "normal",
+        False,
+        Size(142, 24, 401163),
+        300,
+        [],
+        """
+        frames:11 features:20 poses:40 keyframes:42 shrink:49 scout:55 depth:68 consistency:71 fuse_scene:76
+        locate:93 crops:113 cues:130 depth:184 evaluate_reconstruction:186 consistency:198 fuse_object:206
+        locate_object:208 segment:230 surface:270 evaluate:277 pixel_masks:277 evaluate:279 cut_object:282
+        texture:289 evaluate:290 photographs:300
+        """,
+    ),
+    "phone video, idle machine": Recorded(
+        "normal",
+        False,
+        Size(142, 24, 401163),
+        255,
+        [],
+        """
+        frames:7 features:15 poses:31 keyframes:32 shrink:36 scout:41 depth:52 consistency:55 fuse_scene:60
+        locate:75 crops:85 cues:102 depth:154 evaluate_reconstruction:155 consistency:169 fuse_object:177
+        locate_object:179 segment:199 surface:231 evaluate:235 pixel_masks:238 evaluate:240 cut_object:241
+        evaluate:245 texture:249 photographs:254
+        """,
+    ),
+}
