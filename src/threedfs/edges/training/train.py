@@ -39,14 +39,14 @@ class Plan:
     seed : int
     """
 
-    tiles: int = 90
-    leaves: int = 420
-    still_lifes: int = 9
+    tiles: int = 45
+    leaves: int = 200
+    still_lifes: int = 4
     views: int = 6
     height: int = 240
     width: int = 320
-    windows: int = 150
-    trees: int = 8
+    windows: int = 200
+    trees: int = 6
     feature_share: float = 0.2
     growth: Growth = field(default_factory=Growth)
     seed: int = 23
