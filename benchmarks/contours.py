@@ -29,8 +29,8 @@ from threedfs.io.contour_forest import read_forest
 from threedfs.io.metrics import write_metrics
 from threedfs.params.edges import EdgesParams
 
-SMOOTHINGS = (1.5, 2.0, 2.5, 3.0)
-LEVELS = np.geomspace(8, 400, 24)
+SMOOTHINGS = (1.5, 2.0, 2.5)
+LEVELS = np.geomspace(25, 250, 10)
 Truths = list[tuple[np.ndarray, list[np.ndarray]]]
 
 
@@ -74,7 +74,7 @@ def compare(truths: Truths) -> dict[str, ContourScores]:
     """Score the methods and print a row of each."""
     forest = read_forest()
     scores = {
-        "structured": score(lambda image: thin(structured_contours(image, whole(image), forest)), truths, 0.5),
+        "structured": score(lambda image: thin(structured_contours(image, whole(image), forest)), truths, 0.3),
         "gradient": score(lambda image: thin(gradient(image)), truths, 1.0),
     }
     cannies = [score(lambda image, by=by: canny(image, by), truths, 1.0, len(LEVELS)) for by in SMOOTHINGS]
@@ -88,9 +88,7 @@ def compare(truths: Truths) -> dict[str, ContourScores]:
     return scores
 
 
-def score(
-    detect: Callable[[np.ndarray], np.ndarray], truths: Truths, highest: float, steps: int = 30
-) -> ContourScores:
+def score(detect: Callable[[np.ndarray], np.ndarray], truths: Truths, highest: float, steps: int = 15) -> ContourScores:
     """Score a detector of thin contours at `steps` thresholds up to `highest`."""
     thresholds = np.arange(1, steps + 1) / steps * highest
     return score_contours([count_matches(detect(image), marked, thresholds) for image, marked in truths], thresholds)

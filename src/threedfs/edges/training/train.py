@@ -39,14 +39,14 @@ class Plan:
     seed : int
     """
 
-    tiles: int = 45
-    leaves: int = 200
-    still_lifes: int = 4
+    tiles: int = 30
+    leaves: int = 150
+    still_lifes: int = 3
     views: int = 6
     height: int = 240
     width: int = 320
-    windows: int = 200
-    trees: int = 6
+    windows: int = 260
+    trees: int = 4
     feature_share: float = 0.2
     growth: Growth = field(default_factory=Growth)
     seed: int = 23
