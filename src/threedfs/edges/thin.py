@@ -28,8 +28,9 @@ def thin(strength: np.ndarray) -> np.ndarray:
     by_row, by_column = np.gradient(smooth)
     vv, uu = np.gradient(by_row, axis=0), np.gradient(by_column, axis=1)
     uv = np.gradient(by_column, axis=0)
-    # The eigenvector of the Hessian with the most negative eigenvalue points across a ridge.
-    angle = 0.5 * np.arctan2(2 * uv, uu - vv) + np.pi / 2
+    # Across a contour lies the eigenvector of the Hessian with the largest magnitude: negative on the ridge, positive
+    # on its flanks.
+    angle = 0.5 * np.arctan2(2 * uv, uu - vv) + np.where(uu + vv < 0, np.pi / 2, 0)
     u, v = np.meshgrid(np.arange(strength.shape[1]), np.arange(strength.shape[0]))
     peak = strength > 0
     for side in (-1, 1):
