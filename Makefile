@@ -3,6 +3,7 @@
 # make setup   only set everything up
 # make config  rewrite config/ from the parameters declared in src/threedfs/params/
 # make results copy the figures, tables and plots of the last run into docs/
+# make contours  train the contour detector anew: the same seed, the same bytes
 # make lock    rewrite the hashed pins from envs/requirements.in
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= 2
@@ -10,7 +11,7 @@ BIN := .venv/bin
 PINS := $(shell cksum < envs/requirements.txt | tr ' ' '-')
 READY := .venv/.ready-$(PINS)
 
-.PHONY: demo test config results lock setup
+.PHONY: demo test config results contours lock setup
 
 demo: setup
 	$(BIN)/snakemake --cores $(CORES)
@@ -26,6 +27,9 @@ config: setup
 
 results: setup
 	$(BIN)/python -m threedfs.run_end.publish
+
+contours: setup
+	$(BIN)/python benchmarks/train_contours.py
 
 lock: setup
 	$(BIN)/python -m venv .venv/lock

@@ -11,7 +11,11 @@ from threedfs.params.field import parameter
 class EdgesParams:
     """How contour strength is measured."""
 
-    method: str = parameter("multiscale_gradient", "the detector", choices=("multiscale_gradient",))
+    method: str = parameter(
+        "multiscale_gradient",
+        "the detector: colour gradients, to which all other parameters belong, or learned contours",
+        choices=("multiscale_gradient", "structured"),
+    )
     scales: tuple[float, ...] = parameter(
         (1.0, 2.0, 4.0),
         "standard deviations of the smoothing before each gradient",

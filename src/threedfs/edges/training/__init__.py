@@ -1,0 +1,1 @@
+"""How the contour detector learns: pictures whose contours are known, and trees grown from them."""
