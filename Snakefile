@@ -30,6 +30,10 @@ include: "workflow/rules/depth_experiment.smk"
 include: "workflow/rules/evaluate.smk"
 
 
+localrules:
+    collect,
+
+
 rule all:
     default_target: True
     input:
@@ -44,6 +48,7 @@ rule all:
 
 onstart:
     refuse_missing()
+    wait_for_cluster()
     look_on_demand()
 
 

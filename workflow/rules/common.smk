@@ -5,6 +5,7 @@ import sys
 
 from threedfs.densify.engine import choose_engine
 from threedfs.errors import UserError
+from threedfs.memory import grow_memory
 from threedfs.params.sequences import load_sequences
 from threedfs.store.code import digest_code, library_versions
 from threedfs.store.digests import InputDigests
@@ -21,7 +22,8 @@ TRIED = [name for name in SEQUENCES if SEQUENCES[name]["depth_experiment"]]
 # it would idle while such a job waits for both, and through half of the work on poses.
 THREADS = 2 if len(SEQUENCES) == 1 else 1
 # Keyframes that a job works on at once: on this machine its cores, shared by the sequences; on a cluster a part of a node.
-CORES = workflow.resource_settings.cores
+# There a job reads the rules again, and must come to what was asked for it, not to a share of its node's cores.
+CORES = None if workflow.remote_exec else workflow.resource_settings.cores
 KEYFRAMES_AT_ONCE = 8 if CORES is None else max(1, CORES // max(1, len(SEQUENCES)))
 STORE_DIGESTS = InputDigests(Path(config["store"]) / "digests")
 
@@ -62,6 +64,6 @@ def settings_of_each(*stages):
     return lambda wildcards: {stage: settings_of(stage)(wildcards) for stage in stages}
 
 
-def memory_of_keyframes(megabytes):
-    """Return a resource function: the MB of a job that needs so many for each keyframe that it works on at once."""
-    return lambda wildcards, threads: megabytes * threads
+def megabytes(needed):
+    """Return a resource function: the MB of a job that needs so many; twice as many at every further attempt."""
+    return lambda wildcards, attempt: grow_memory(needed, attempt)
