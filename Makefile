@@ -4,14 +4,16 @@
 # make config  rewrite config/ from the parameters declared in src/threedfs/params/
 # make results copy the figures, tables and plots of the last run into docs/
 # make contours  train the contour detector anew: the same seed, the same bytes
-# make lock    rewrite the hashed pins from envs/requirements.in
+# make lock    rewrite the hashed pins from envs/requirements.in and envs/slurm.in
+# make setup-slurm   setup, and what runs on a Slurm cluster need (docs/cluster.md)
+# make cluster-test  reconstruct the sample, in small, on a Slurm of its own on this machine, which it stops again
 PYTHON ?= $(shell command -v python3.11 || command -v python3)
 CORES ?= 2
 BIN := .venv/bin
 PINS := $(shell cksum < envs/requirements.txt | tr ' ' '-')
 READY := .venv/.ready-$(PINS)
 
-.PHONY: demo test config results contours lock setup
+.PHONY: demo test config results contours lock setup setup-slurm cluster-test
 
 demo: setup
 	$(BIN)/snakemake --cores $(CORES)
@@ -34,11 +36,19 @@ contours: setup
 lock: setup
 	$(BIN)/python -m venv .venv/lock
 	.venv/lock/bin/pip install --quiet pip-tools
-	.venv/lock/bin/pip-compile --quiet --generate-hashes --strip-extras --allow-unsafe --no-header \
-	    --no-emit-index-url --no-emit-find-links --no-emit-trusted-host \
-	    --output-file envs/requirements.txt envs/requirements.in
+	for name in requirements slurm; do \
+	    .venv/lock/bin/pip-compile --quiet --generate-hashes --strip-extras --allow-unsafe --no-header \
+	        --no-emit-index-url --no-emit-find-links --no-emit-trusted-host \
+	        --output-file envs/$$name.txt envs/$$name.in || exit 1; \
+	done
 
 setup: $(READY)
+
+setup-slurm: setup
+	$(BIN)/pip install --quiet --disable-pip-version-check --require-hashes -r envs/slurm.txt
+
+cluster-test: setup-slurm
+	$(BIN)/python tests/cluster/run_cluster.py --install --kernels .venv/kernels
 
 # the environment is made anew only when the pins change
 $(READY): envs/requirements.txt pyproject.toml

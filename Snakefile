@@ -30,6 +30,10 @@ include: "workflow/rules/depth_experiment.smk"
 include: "workflow/rules/evaluate.smk"
 
 
+localrules:
+    collect,
+
+
 rule all:
     default_target: True
     input:
@@ -43,6 +47,7 @@ rule all:
 
 
 onstart:
+    wait_for_cluster()
     look_on_demand()
 
 

@@ -1,9 +1,15 @@
-"""Memory that stages on a voxel grid need, for the scheduler."""
+"""Memory that jobs need, for the scheduler."""
 
 from __future__ import annotations
 
 _PROGRAM = 400
 """MB of Python, its libraries, and the maps of one keyframe."""
+
+_STARTERS = 250
+"""MB of the two Snakemakes around a job on a cluster, which count as the job's."""
+
+_WORKER = 150
+"""MB of a process forked for a keyframe: most of it is its parent's too, and some clusters count it again."""
 
 _BYTES_PER_VOXEL = {
     "fuse_scene": 40,
@@ -11,6 +17,7 @@ _BYTES_PER_VOXEL = {
     "fuse_object": 40,
     "fuse_baseline": 40,
     "deform": 40,
+    "consistency": 0,
     "locate_object": 30,
     "object": 60,
     "cut_object": 150,
@@ -20,8 +27,18 @@ _BYTES_PER_VOXEL = {
 }
 """At most, over a cube: the highest peaks of the benchmark's jobs are 0.37 to 0.78 of what these give."""
 
-_BYTES_PER_PIXEL = {"segment": 80, "surface": 12, "volumetric_cut": 20}
+_BYTES_PER_PIXEL = {"segment": 80, "surface": 12, "volumetric_cut": 20, "consistency": 40}
 """Of every keyframe, which these stages hold all at once; surface holds masks of three times as many frames."""
+
+_BYTES_PER_PIXEL_AT_WORK = {
+    "scout": 900,
+    "cues": 900,
+    "stereo": 900,
+    "stereo_check": 900,
+    "depth": 2200,
+    "depth_trial": 2200,
+}
+"""Of each keyframe that a job works on; the highest peaks of the benchmark are 0.4 to 0.8 of what these give."""
 
 
 def estimate_memory(stage: str, longest_side: int, pixels: float = 0, keyframes: int = 0, unknowns: int = 0) -> int:
@@ -48,3 +65,40 @@ def estimate_memory(stage: str, longest_side: int, pixels: float = 0, keyframes:
     voxels = _BYTES_PER_VOXEL[stage] * longest_side**3
     fit = 3 * 8 * unknowns**2
     return int(_PROGRAM + (voxels + _BYTES_PER_PIXEL.get(stage, 0) * pixels * keyframes + fit) / 1e6)
+
+
+def estimate_memory_of_keyframes(rule: str, pixels: float, at_once: int) -> int:
+    """Estimate the memory of a job that works on several keyframes at once, MB.
+
+    Parameters
+    ----------
+    rule : str
+    pixels : float
+        Of a keyframe.
+    at_once : int
+
+    Examples
+    --------
+    >>> estimate_memory_of_keyframes("depth", 640 * 480, 1)
+    1225
+    """
+    each = _WORKER + _BYTES_PER_PIXEL_AT_WORK[rule] * pixels / 1e6
+    return int(_PROGRAM + at_once * each)
+
+
+def grow_memory(needed: float, attempt: int) -> int:
+    """Return what to ask a scheduler for, MB: twice as much at every further attempt.
+
+    Parameters
+    ----------
+    needed : float
+        What the job itself needs.
+    attempt : int
+        From 1.
+
+    Examples
+    --------
+    >>> grow_memory(1000, 1), grow_memory(1000, 2)
+    (1250, 2500)
+    """
+    return int(_STARTERS + needed) * 2 ** (attempt - 1)

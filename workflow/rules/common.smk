@@ -6,6 +6,7 @@ import sys
 from threedfs.densify.engine import choose_engine
 from threedfs.errors import UserError
 from threedfs.inputs.places import check_places
+from threedfs.memory import grow_memory
 from threedfs.params.command_line import read_scalars
 from threedfs.params.configuration import configuration_schema
 from threedfs.params.sequences import load_sequences
@@ -13,7 +14,8 @@ from threedfs.store.code import digest_code, library_versions
 from threedfs.store.digests import InputDigests
 
 NOTES = sys.stderr if workflow.is_main_process else None  # jobs read the rules again
-CORES = workflow.resource_settings.cores
+# On a cluster a job reads the rules again, and must come to what was asked for it, not to a share of its node's cores.
+CORES = None if workflow.remote_exec else workflow.resource_settings.cores
 if CORES is not None and CORES < 1:
     sys.exit(f"threedfs: --cores: expected a whole number of at least 1, got {CORES}.")
 try:
@@ -70,6 +72,6 @@ def settings_of_each(*stages):
     return lambda wildcards: {stage: settings_of(stage)(wildcards) for stage in stages}
 
 
-def memory_of_keyframes(megabytes):
-    """Return a resource function: the MB of a job that needs so many for each keyframe that it works on at once."""
-    return lambda wildcards, threads: megabytes * threads
+def megabytes(needed):
+    """Return a resource function: the MB of a job that needs so many; twice as many at every further attempt."""
+    return lambda wildcards, attempt: grow_memory(needed, attempt)

@@ -23,7 +23,8 @@ rule crops:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=1500,
+        mem_mb=megabytes(1500),
+        runtime=minutes(30),
     params:
         code=code_of("crops"),
         settings=settings_of("crops"),

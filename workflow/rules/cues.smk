@@ -20,7 +20,8 @@ rule cues:
         "../../envs/threedfs.yaml"
     threads: KEYFRAMES_AT_ONCE
     resources:
-        mem_mb=memory_of_keyframes(1500),
+        mem_mb=memory_of_keyframes("cues"),
+        runtime=minutes(20, each=1),
     params:
         stages=CUES,
         code=[code_of(stage) for stage in CUES],

@@ -17,6 +17,7 @@ rule deform:
     threads: THREADS
     resources:
         mem_mb=memory_of("deform", unknowns=unknowns_of_correction),
+        runtime=minutes(60),
     params:
         code=code_of("deform"),
         settings=settings_of("deform"),

@@ -19,7 +19,8 @@ rule densify:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=3000,
+        mem_mb=megabytes(3000),
+        runtime=minutes(120),
     params:
         code=code_of("densify"),
         settings=settings_of("densify"),

@@ -18,7 +18,8 @@ rule depth:
         "../../envs/threedfs.yaml"
     threads: KEYFRAMES_AT_ONCE
     resources:
-        mem_mb=memory_of_keyframes(1500),
+        mem_mb=memory_of_keyframes("depth"),
+        runtime=minutes(20, each=1),
     params:
         stages=["depth"],
         code=code_of("depth"),

@@ -23,7 +23,8 @@ rule depth_trial:
         "../../envs/threedfs.yaml"
     threads: KEYFRAMES_AT_ONCE
     resources:
-        mem_mb=memory_of_keyframes(1500),
+        mem_mb=memory_of_keyframes("depth_trial"),
+        runtime=minutes(20, each=4),
     params:
         stages=TRIALS,
         code=[code_of(stage) for stage in TRIALS],
@@ -59,7 +60,8 @@ rule depth_experiment:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=1000,
+        mem_mb=megabytes(1000),
+        runtime=minutes(20),
     params:
         code=code_of("depth_experiment"),
         settings=settings_of("depth_experiment"),

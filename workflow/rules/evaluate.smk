@@ -20,7 +20,8 @@ rule evaluate_reconstruction:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=2000,
+        mem_mb=megabytes(2000),
+        runtime=minutes(30),
     params:
         code=code_of("evaluate_reconstruction"),
         settings=settings_of("evaluate_reconstruction"),
@@ -61,7 +62,8 @@ rule evaluate:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=2000,
+        mem_mb=megabytes(2000),
+        runtime=minutes(30),
     params:
         code=code_of("evaluate"),
         settings=settings_of("evaluate"),
@@ -94,7 +96,8 @@ rule photographs:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=1500,
+        mem_mb=megabytes(1500),
+        runtime=minutes(20),
     params:
         code=code_of("photographs"),
         settings=settings_of("photographs"),
@@ -139,7 +142,8 @@ rule collect:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=500,
+        mem_mb=megabytes(500),
+        runtime=minutes(20),
     params:
         code=code_of("collect"),
         settings=settings_of("collect"),

@@ -14,7 +14,8 @@ rule calibrate:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=1500,
+        mem_mb=megabytes(1500),
+        runtime=minutes(30),
     params:
         code=code_of("calibrate"),
         settings=settings_of("calibrate"),
@@ -40,7 +41,8 @@ rule frames:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=1500,
+        mem_mb=megabytes(1500),
+        runtime=minutes(30),
     params:
         code=code_of("frames"),
         settings=settings_of("frames"),

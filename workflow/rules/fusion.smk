@@ -15,7 +15,8 @@ rule consistency:
         "../../envs/threedfs.yaml"
     threads: THREADS
     resources:
-        mem_mb=2000,
+        mem_mb=memory_of("consistency"),
+        runtime=minutes(30),
     params:
         code=code_of("consistency"),
         settings=settings_of("consistency"),
@@ -43,6 +44,7 @@ rule fuse_object:
     threads: THREADS
     resources:
         mem_mb=memory_of("fuse_object"),
+        runtime=minutes(30),
     params:
         code=code_of("fuse_object"),
         settings=settings_of("fuse_object"),
@@ -69,6 +71,7 @@ rule fuse_baseline:
     threads: THREADS
     resources:
         mem_mb=memory_of("fuse_baseline", grid="fuse_baseline"),
+        runtime=minutes(30),
     params:
         code=code_of("fuse_baseline"),
         settings=settings_of("fuse_baseline"),

@@ -5,7 +5,7 @@ from functools import lru_cache
 from threedfs.inputs.check import find_fault
 from threedfs.params.configuration import JOINT_METHODS
 from threedfs.io.truth_files import choose_with_depth
-from threedfs.memory import estimate_memory
+from threedfs.memory import estimate_memory, estimate_memory_of_keyframes
 
 FIELDS = {  # where each method that has one finds the object's field
     "fused_sdf": "07_fusion/object.zarr.zip",
@@ -179,17 +179,45 @@ def count_keyframes(input):
     return len(json.loads(keyframes.read_text())["order"]) if keyframes.is_file() else 0
 
 
+def pixels_of_view(wildcards):
+    """Return the pixels of a keyframe as a job sees it: of a crop, or of a small whole frame in the scene pass."""
+    if wildcards.get("scope", ""):
+        return 0.75 * settings_of("shrink")(wildcards)["longest_side"] ** 2
+    crops = settings_of("crops")(wildcards)
+    whole = crops["whole"] or wildcards.sequence not in OBJECTS
+    return 0.75 * crops["longest_side"] ** 2 if whole else crops["pixels"]
+
+
 def memory_of(stage, grid="fuse_object", unknowns=lambda wildcards: 0):
     """Return a resource function: the MB that a stage needs on the grid of another, and for a fit of unknowns."""
 
-    def estimate(wildcards, input):
+    def estimate(wildcards, input, attempt):
         side = settings_of(grid)(wildcards)["longest_side"]
-        crops = settings_of("crops")(wildcards)
-        whole = crops["whole"] or wildcards.sequence not in OBJECTS
-        pixels = 0.75 * crops["longest_side"] ** 2 if whole else crops["pixels"]
-        return estimate_memory(
-            stage, side, pixels, count_keyframes(input), unknowns(wildcards)
-        )
+        pixels, keyframes = pixels_of_view(wildcards), count_keyframes(input)
+        needed = estimate_memory(stage, side, pixels, keyframes, unknowns(wildcards))
+        return grow_memory(needed, attempt)
+
+    return estimate
+
+
+def memory_of_keyframes(rule):
+    """Return a resource function: the MB of a job that works on as many keyframes at once as it has threads."""
+
+    def estimate(wildcards, threads, attempt):
+        needed = estimate_memory_of_keyframes(rule, pixels_of_view(wildcards), threads)
+        return grow_memory(needed, attempt)
+
+    return estimate
+
+
+def minutes(once, each=0):
+    """Return a resource function: the run time of a job, several times what it takes, and more at every attempt.
+
+    `each` is of a keyframe; as many are worked on at once as there are threads.
+    """
+
+    def estimate(wildcards, input, threads, attempt):
+        return attempt * int(once + each * count_keyframes(input) / threads)
 
     return estimate
 

@@ -17,7 +17,8 @@ checkpoint keyframes:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=1500,
+        mem_mb=megabytes(1500),
+        runtime=minutes(20),
     params:
         code=code_of("keyframes"),
         settings=settings_of("keyframes"),

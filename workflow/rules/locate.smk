@@ -20,6 +20,7 @@ rule locate_object:
     threads: 1
     resources:
         mem_mb=memory_of("locate_object"),
+        runtime=minutes(20),
     params:
         code=code_of("locate_object"),
         settings=settings_of("locate_object"),

@@ -24,6 +24,7 @@ rule object:
     threads: 1
     resources:
         mem_mb=memory_of("object"),
+        runtime=minutes(30),
     params:
         code=code_of("object"),
         settings=settings_of("object"),
@@ -53,7 +54,8 @@ rule poisson:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=3000,
+        mem_mb=megabytes(3000),
+        runtime=minutes(60),
     params:
         code=code_of("poisson"),
         settings=settings_of("poisson"),
@@ -87,6 +89,7 @@ rule cut_object:
     threads: 1
     resources:
         mem_mb=memory_of("cut_object"),
+        runtime=minutes(30),
     params:
         code=code_of("cut_object"),
         settings=settings_of("cut_object"),
@@ -116,7 +119,8 @@ rule pixel_masks:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=1000,
+        mem_mb=megabytes(1000),
+        runtime=minutes(20),
     params:
         code=code_of("pixel_masks"),
         settings=settings_of("pixel_masks"),
@@ -152,6 +156,7 @@ rule surface:
     threads: THREADS
     resources:
         mem_mb=memory_of("surface", grid="surface"),
+        runtime=minutes(60),
     params:
         code=code_of("surface"),
         settings=settings_of("surface"),
@@ -186,9 +191,10 @@ rule texture:
     threads: 1
     resources:
         # a mesh that is not simplified has ten times the vertices
-        mem_mb=lambda wildcards: (
-            2000 if settings_of("texture")(wildcards)["tolerance"] else 5000
+        mem_mb=lambda wildcards, attempt: grow_memory(
+            2000 if settings_of("texture")(wildcards)["tolerance"] else 5000, attempt
         ),
+        runtime=minutes(30),
     params:
         code=code_of("texture"),
         settings=settings_of("texture"),

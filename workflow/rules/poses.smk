@@ -14,7 +14,8 @@ rule features:
         "../../envs/threedfs.yaml"
     threads: THREADS
     resources:
-        mem_mb=2000,
+        mem_mb=megabytes(2000),
+        runtime=minutes(30),
     params:
         code=code_of("features"),
         settings=settings_of("features"),
@@ -46,7 +47,8 @@ rule poses:
         "../../envs/threedfs.yaml"
     threads: THREADS
     resources:
-        mem_mb=3000,
+        mem_mb=megabytes(3000),
+        runtime=minutes(60),
     params:
         code=code_of("poses"),
         settings=settings_of("poses"),

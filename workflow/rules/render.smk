@@ -26,7 +26,8 @@ rule render:
         "../../envs/threedfs.yaml"
     threads: THREADS
     resources:
-        mem_mb=2500,
+        mem_mb=megabytes(2500),
+        runtime=minutes(60),
     params:
         code=lambda wildcards: code_of(
             "render", take_module(SEQUENCES[wildcards.sequence]["rendered"])

@@ -1,11 +1,20 @@
 # How a run begins and ends; functions, not rules.
 import time
 
+from threedfs.store.leftovers import wait_for_leftovers
 from threedfs.store.run_lock import take_over
 
 RUN_LOCK = take_over(Path(".snakemake")) if workflow.is_main_process else None
 STARTED = time.time()
 REPORTED = ("cv2", "numba", "numpy", "pycolmap", "scipy", "skimage", "trimesh", "zarr")
+
+
+def wait_for_cluster():
+    """Let jobs end that a run left on a cluster when it was killed; this one then takes their work from the store."""
+    if RUN_LOCK:
+        wait_for_leftovers(
+            Path(), lambda sentence: sys.stderr.write(f"threedfs: {sentence}\n")
+        )
 
 
 def look_on_demand():

@@ -19,7 +19,8 @@ rule shrink:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=1500,
+        mem_mb=megabytes(1500),
+        runtime=minutes(20),
     params:
         code=code_of("shrink"),
         settings=settings_of("shrink"),
@@ -47,7 +48,8 @@ rule scout:
         "../../envs/threedfs.yaml"
     threads: KEYFRAMES_AT_ONCE
     resources:
-        mem_mb=memory_of_keyframes(1500),
+        mem_mb=memory_of_keyframes("scout"),
+        runtime=minutes(10, each=0.5),
     params:
         stages=SCOUTS,
         code=[code_of(stage) for stage in SCOUTS],
@@ -76,6 +78,7 @@ rule fuse_scene:
     threads: THREADS
     resources:
         mem_mb=memory_of("fuse_scene", grid="fuse_scene"),
+        runtime=minutes(30),
     params:
         code=code_of("fuse_scene"),
         settings=settings_of("fuse_scene"),
@@ -107,6 +110,7 @@ rule locate:
     threads: 1
     resources:
         mem_mb=memory_of("locate", grid="fuse_scene"),
+        runtime=minutes(30),
     params:
         code=code_of("locate"),
         settings=settings_of("locate"),

@@ -26,6 +26,7 @@ rule segment:
     threads: 1
     resources:
         mem_mb=memory_of("segment"),
+        runtime=minutes(30),
     params:
         code=code_of("segment"),
         settings=settings_of("segment"),
@@ -53,6 +54,7 @@ rule volumetric_cut:
     threads: 1
     resources:
         mem_mb=memory_of("volumetric_cut"),
+        runtime=minutes(60),
     params:
         code=code_of("volumetric_cut"),
         settings=settings_of("volumetric_cut"),

@@ -17,7 +17,8 @@ rule stereo:
         "../../envs/threedfs.yaml"
     threads: KEYFRAMES_AT_ONCE
     resources:
-        mem_mb=memory_of_keyframes(1000),
+        mem_mb=memory_of_keyframes("stereo"),
+        runtime=minutes(20, each=1.5),
     params:
         stages=["stereo"],
         code=code_of("stereo"),
@@ -43,7 +44,8 @@ rule stereo_check:
         "../../envs/threedfs.yaml"
     threads: KEYFRAMES_AT_ONCE
     resources:
-        mem_mb=memory_of_keyframes(1000),
+        mem_mb=memory_of_keyframes("stereo_check"),
+        runtime=minutes(10, each=0.5),
     params:
         stages=["stereo_check"],
         code=code_of("stereo_check"),
