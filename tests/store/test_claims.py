@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import os
 import signal
+import socket
+import subprocess
+import sys
 import time
 
 import pytest
 
 from threedfs.store.claims import claim
-from threedfs.store.heartbeat import STALE, beating, is_alive
+from threedfs.store.heartbeat import RUN, STALE, beating, is_alive
 
 PROGRAM = """
 import io
@@ -72,6 +75,22 @@ def test_a_killed_job_is_taken_over_and_leaves_no_process(start, tmp_path):
     assert start("second").communicate()[0].startswith("False")
     assert (tmp_path / "second").read_text() == "one"
     wait_until(lambda: not _children_of(tmp_path))
+
+
+def test_a_job_ends_with_the_run_that_it_is_part_of(start, tmp_path, monkeypatch):
+    run = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
+    monkeypatch.setenv(RUN, f"{socket.gethostname()}.{run.pid}")
+    job = start("first")
+    wait_until(lambda: list(tmp_path.glob("begun-*")))
+    time.sleep(1.2)
+    assert job.poll() is None
+    run.kill()
+    run.wait()
+    job.communicate(timeout=30)
+    assert job.returncode == -signal.SIGKILL and not (tmp_path / "first").exists()
+    monkeypatch.setenv(RUN, f"elsewhere.{run.pid}")  # which cannot be known here
+    (tmp_path / "go").touch()
+    assert start("second").communicate()[0].startswith("False")
 
 
 def _children_of(folder):

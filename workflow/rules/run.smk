@@ -1,10 +1,13 @@
 # How a run begins and ends; functions, not rules.
 import time
 
+from threedfs.store.heartbeat import name_run
 from threedfs.store.leftovers import wait_for_leftovers
 from threedfs.store.run_lock import take_over
 
 RUN_LOCK = take_over(Path(".snakemake")) if workflow.is_main_process else None
+if workflow.is_main_process:
+    name_run()
 STARTED = time.time()
 REPORTED = ("cv2", "numba", "numpy", "pycolmap", "scipy", "skimage", "trimesh", "zarr")
 

@@ -17,6 +17,8 @@ from threedfs.store.files import is_running, make_folder
 
 STALE = 60.0
 """Seconds after which a file that was not renewed is that of a dead process."""
+RUN = "THREEDFS_RUN"
+"""Environment variable with HOST.PROCESS of the run that a job is part of."""
 _INTERVAL = 5.0
 _SET_DEATH_SIGNAL = 1  # of Linux's prctl
 
@@ -26,7 +28,8 @@ def beating(folder: Path) -> Iterator[Path]:
     """Keep a file in `folder` fresh while this process runs; it is gone afterwards.
 
     A process of its own does it, as kernels and libraries may keep this one busy for minutes, and a thread would be
-    lost, or worse, in a fork. It ends with this process, however that ends.
+    lost, or worse, in a fork. It ends with this process, however that ends; and it ends this process if the run that it
+    is part of, on the same machine, was killed, as nobody waits for it then.
 
     Parameters
     ----------
@@ -72,6 +75,17 @@ def is_alive(file: Path, now: float) -> bool:
     return age < STALE
 
 
+def name_run() -> None:
+    """Have all jobs that this process starts end with it."""
+    os.environ[RUN] = f"{socket.gethostname()}.{os.getpid()}"
+
+
+def has_lost_run() -> bool:
+    """Say whether the run that this process is part of is known to have ended."""
+    host, _, process = os.environ.get(RUN, "").rpartition(".")
+    return host == socket.gethostname() and process.isdigit() and not is_running(int(process))
+
+
 def read_clock(file: Path) -> float:
     """Return the time by the clock of a file system, by renewing a file on it."""
     os.utime(file)
@@ -93,6 +107,8 @@ def _beat(file: Path, parent: int) -> None:
         last = time.monotonic()
         while os.getppid() == parent:
             time.sleep(0.5)
+            if has_lost_run():
+                os.kill(parent, signal.SIGKILL)
             if time.monotonic() - last >= _INTERVAL:
                 last = time.monotonic()
                 os.utime(file)

@@ -247,13 +247,13 @@ def explained(store: Path) -> Iterator[None]:
     try:
         yield
     except OSError as fault:
-        place = str(fault.filename or store)
-        if fault.errno in _FULL or (
-            fault.errno in _FORBIDDEN and Path(store).absolute() in Path(place).absolute().parents
-        ):
+        place, root = Path(fault.filename or store).absolute(), store.absolute()
+        of_store = place == root or root in place.parents or place in root.parents
+        if fault.errno in _FULL or (fault.errno in _FORBIDDEN and of_store):
             raise UserError(
-                f"{place}: expected to write finished work to the store {store}, got: {fault.strerror}; free space, "
-                "or name another folder as `store`. What was finished before is still good."
+                f"{fault.filename or store}: expected to write finished work to the store {store}, got: "
+                f"{fault.strerror}; free space, or name another folder as `store`. "
+                "What was finished before is still good."
             ) from None
         raise
 
