@@ -19,6 +19,52 @@ ROOT = Path(__file__).resolve().parents[2]
 DEEP = "".join(f"{{a{level}: " for level in range(30)) + "1" + "}" * 30
 
 CASES = {
+    "unknown parameter": ("depth: {iteratons: 5}", "depth: unknown key iteratons"),
+    "wrong type": ("depth: {iterations: many}", "depth.iterations: expected integer, got 'many'"),
+    "no such choice": ("depth: {prior: third_order}", "depth.prior: expected one of first_order"),
+    "space in name": ("sequences: {a b: {source: config}}", "'a b' cannot name a sequence"),
+    "no such mask": (
+        "sequences: {mug: {source: config, truth: {masks: m}}}",
+        "sequences.mug.truth.masks: expected a file or folder, found no m",
+    ),
+    "no source": ("sequences: {mug: {cameras: config}}", "sequences.mug: expected the key source"),
+    "source and take": (
+        "sequences: {mug: {source: config, rendered: books}}",
+        "sequences.mug: expected no source beside rendered",
+    ),
+    "no such take": ("sequences: {mug: {rendered: mug}}", "sequences.mug.rendered: expected one of books,"),
+    "true cameras of a video": (
+        "sequences: {mug: {source: config, true_cameras: true}}",
+        "sequences.mug.true_cameras: only a rendered sequence has them",
+    ),
+    "odd width": ("render: {width: 100}", "render.width: expected a multiple of 8, got 100"),
+    "variant of nothing": (
+        "methods: [tsdf]\nvariants: {a: {}}",
+        "variants: expected a method that has variants, one of",
+    ),
+    "variant of another stage": ("variants: {a: {depth: {}}}", "variants.a: unknown key depth"),
+    "variant out of range": (
+        "methods: [gc_select]\nvariants: {a: {segment: {link_weight: -1}}}",
+        "variants.a.segment.link_weight: expected at least 0.0, got -1",
+    ),
+    "name of the run's own": (
+        "sequences: {tables: {source: config}}",
+        "expected other names than README.md, benchmarks",
+    ),
+    "cylinder of nothing": (
+        "evaluate: {cylinder_sequences: [mgu]}",
+        "evaluate.cylinder_sequences: expected names of sequences, got mgu, which is none of them",
+    ),
+    "space in a variant": (
+        "methods: [gc_select]\nvariants: {a b: {segment: {table: false}}}",
+        "'a b' cannot name a variant",
+    ),
+    "one method without brackets": (
+        "methods: tsdf",
+        "methods: expected a list, got 'tsdf'; write a list, as in [tsdf]",
+    ),
+    "file in place of keys": ("sequences: {mug: mug.mp4}", "sequences.mug: expected keys with values, got 'mug.mp4'; "),
+    "negative seed": ("seed: -1", "seed: expected at least 0, got -1"),
     "NaN": ("depth: {photometric_weight: .nan}", "depth.photometric_weight: expected a finite number, got nan"),
     "infinity": (
         "evaluate: {mesh_thresholds: [.inf]}",

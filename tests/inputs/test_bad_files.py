@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -302,6 +303,13 @@ def test_a_file_that_cannot_be_opened_is_named(tmp_path, entry, monkeypatch):
     monkeypatch.setattr("threedfs.inputs.look.look", deny)
     fault, _ = find_fault(entry, FRAMES, tmp_path)
     assert fault == "/x/cameras.json: expected a file that can be read, got Permission denied; check the file."
+
+
+def test_a_file_dated_in_the_future_is_refused(tmp_path, sound, entry):
+    shutil.copy(sound / "video.mp4", tmp_path / "video.mp4")
+    os.utime(tmp_path / "video.mp4", (4e9, 4e9))
+    fault, _ = find_fault({**entry, "source": str(tmp_path / "video.mp4")}, FRAMES, tmp_path / "memory")
+    assert "video.mp4: expected a file of the past, got one of 2096-" in fault and "touch" in fault
 
 
 def test_some_empty_masks_pass(tmp_path, sound, entry):

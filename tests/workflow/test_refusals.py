@@ -2,63 +2,22 @@
 
 from __future__ import annotations
 
+import os
+
 import pytest
 
 CASES = {
     "unknown key": ("colour: red", "unknown key colour"),
-    "unknown parameter": ("depth: {iteratons: 5}", "depth: unknown key iteratons"),
-    "wrong type": ("depth: {iterations: many}", "depth.iterations: expected integer, got 'many'"),
     "out of range": ("depth: {iterations: -1}", "depth.iterations: expected at least 1, got -1"),
-    "no such choice": ("depth: {prior: third_order}", "depth.prior: expected one of first_order"),
     "slash in name": ("sequences: {a/b: {source: config}}", "'a/b' cannot name a sequence"),
-    "space in name": ("sequences: {a b: {source: config}}", "'a b' cannot name a sequence"),
     "no such file": (
         "sequences: {mug: {source: mug.mp4}}",
         "sequences.mug.source: expected a file or folder, found no",
     ),
-    "no such mask": (
-        "sequences: {mug: {source: config, truth: {masks: m}}}",
-        "sequences.mug.truth.masks: expected a file or folder, found no m",
-    ),
-    "no source": ("sequences: {mug: {cameras: config}}", "sequences.mug: expected the key source"),
-    "source and take": (
-        "sequences: {mug: {source: config, rendered: books}}",
-        "sequences.mug: expected no source beside rendered",
-    ),
-    "no such take": ("sequences: {mug: {rendered: mug}}", "sequences.mug.rendered: expected one of books,"),
-    "true cameras of a video": (
-        "sequences: {mug: {source: config, true_cameras: true}}",
-        "sequences.mug.true_cameras: only a rendered sequence has them",
-    ),
-    "odd width": ("render: {width: 100}", "render.width: expected a multiple of 8, got 100"),
     "unknown method": ("methods: [magic]", "methods.0: expected one of fused_sdf"),
-    "variant of nothing": (
-        "methods: [tsdf]\nvariants: {a: {}}",
-        "variants: expected a method that has variants, one of",
-    ),
-    "variant of another stage": ("variants: {a: {depth: {}}}", "variants.a: unknown key depth"),
-    "variant out of range": (
-        "methods: [gc_select]\nvariants: {a: {segment: {link_weight: -1}}}",
-        "variants.a.segment.link_weight: expected at least 0.0, got -1",
-    ),
-    "name of the run's own": (
-        "sequences: {tables: {source: config}}",
-        "expected other names than README.md, benchmarks",
-    ),
-    "cylinder of nothing": (
-        "evaluate: {cylinder_sequences: [mgu]}",
-        "evaluate.cylinder_sequences: expected names of sequences, got mgu, which is none of them",
-    ),
-    "space in a variant": (
-        "methods: [gc_select]\nvariants: {a b: {segment: {table: false}}}",
-        "'a b' cannot name a variant",
-    ),
-    "one method without brackets": (
-        "methods: tsdf",
-        "methods: expected a list, got 'tsdf'; write a list, as in [tsdf]",
-    ),
-    "file in place of keys": ("sequences: {mug: mug.mp4}", "sequences.mug: expected keys with values, got 'mug.mp4'; "),
-    "negative seed": ("seed: -1", "seed: expected at least 0, got -1"),
+    "not a number": ("depth: {photometric_weight: .nan}", "expected a finite number, got nan"),
+    "name that is a number": ("sequences: {7: {source: config}}", "put it in quotes, as '7'"),
+    "store that is a file": ("store: Snakefile", "store: expected a folder to write to, found a file at Snakefile"),
 }
 
 
@@ -71,6 +30,64 @@ def test_wrong_configuration_ends_with_one_sentence(project, case):
     assert sentence in line
     assert "Traceback" not in output
     assert not (project.folder / "results").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "sentence"),
+    [
+        (["--cores", "-3"], "threedfs: --cores: expected a whole number of at least 1, got -3."),
+        (["--config", "depth={iterations: many}"], "threedfs: configuration, depth.iterations: expected integer"),
+    ],
+)
+def test_wrong_command_lines_end_with_one_sentence(project, arguments, sentence):
+    output = project.run(*arguments, good=False)
+    assert sentence in output and "Traceback" not in output
+    assert not (project.folder / "results").exists()
+
+
+def test_parameters_in_brackets_are_taken_from_the_command_line(project):
+    project.run("-n", "--config", "depth={iterations: 5}")
+
+
+def spoil(project, sentence):
+    """Let the look at the inputs find a fault in every sequence whose source is called so."""
+    (project.package / "inputs/look.py").write_text(
+        "from threedfs.errors import UserError\n\n\ndef look(entry, frames):\n"
+        f"    if 'bad' in entry['source']:\n        raise UserError({sentence!r})\n    return ['a truth looks odd.']\n"
+    )
+
+
+def test_what_cannot_be_used_is_refused_before_any_work_by_a_dry_run_too(project):
+    (project.folder / "bad.mp4").write_text("bad")
+    (project.folder / "bad.yaml").write_text("sequences: {one: {source: bad.mp4}}\n")
+    spoil(project, "bad.mp4: expected a video.")
+    for arguments in (["-n"], [], ["--keep-going"]):
+        output = project.run("--configfile", "bad.yaml", *arguments, good=False)
+        (line,) = (line for line in output.splitlines() if line.startswith("threedfs: "))
+        assert line == "threedfs: inputs of one: bad.mp4: expected a video."
+        assert "Traceback" not in output
+    assert not (project.folder / "results/one").exists()
+
+
+def test_of_several_sequences_the_sound_ones_are_finished(project):
+    for name in ("bad.mp4", "good.mp4"):
+        (project.folder / name).write_text(name)
+    (project.folder / "two.yaml").write_text("sequences: {one: {source: bad.mp4}, two: {source: good.mp4}}\n")
+    spoil(project, "bad.mp4: expected a video.")
+    targets = [f"results/{name}/01_frames/frames.zarr.zip" for name in ("one", "two")]
+    output = project.run("--configfile", "two.yaml", "--keep-going", "--", *targets, good=False)
+    assert "threedfs: frames of one: bad.mp4: expected a video." in output
+    assert output.count("note: inputs of two: a truth looks odd.") == 1
+    assert [(project.folder / target).is_file() for target in targets] == [False, True]
+
+
+def test_a_file_counts_by_its_content_and_not_by_its_time(project):
+    video, frames = project.folder / "mug.mp4", "results/mug/01_frames/frames.zarr.zip"
+    (project.folder / "mug.yaml").write_text("sequences: {mug: {source: mug.mp4}}\n")
+    for content in ("first", "another"):
+        video.write_text(content)
+        os.utime(video, (1e9, 1e9))
+        assert "Nothing to be done" not in project.run("--configfile", "mug.yaml", "--", frames)
 
 
 def test_skipped_sequences_are_named_once_at_the_start(project):

@@ -38,8 +38,7 @@ PAINTED = [method for method in METHODS if method.partition("@")[0] in SURFACES]
 def given(key):
     """Return an input function: a file or folder that the configuration names for a sequence, or nothing.
 
-    What the run does not make counts by its content, which `fingerprint_of` tells. A folder's time says little about
-    its files, and no result is newer than a video from a camera whose clock is ahead.
+    What the run does not make counts by its content, which `fingerprint_of` tells: times say little about it.
     """
 
     def find(wildcards):

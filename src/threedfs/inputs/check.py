@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -42,6 +43,11 @@ def find_fault(entry: Mapping[str, Any], frames: Mapping[str, Any], memory: Path
 
         return look(entry, frames)
 
+    for path in paths:
+        date = path.stat().st_mtime
+        if date > time.time():
+            day = time.strftime("%Y-%m-%d %H:%M", time.localtime(date))
+            return f"{path}: expected a file of the past, got one of {day}; give it a new date, as by touch.", ()
     try:
         return "", remember(memory, paths, given, look_at_files)
     except UserError as fault:
