@@ -112,7 +112,7 @@ def test_with_a_changed_parameter_what_was_removed_comes_back(mine):
     status, output = run("run", "mug.mp4", "--cores", "2", "--set", "depth.iterations=3")
     assert status == 0, output
     said = (folder / "results/logs/run.txt").read_text()
-    assert "frames of mug: taken from the store" in said and "poses of mug" not in said
+    assert "frames of mug: taken from the store" in said and "poses of mug: done" not in said
     assert "iterations=3" in json.loads(next((folder / "results/mug/06_depth").iterdir()).read_text())["params"]
 
 
