@@ -58,7 +58,10 @@ def _make_parser() -> argparse.ArgumentParser:
     run = actions.add_parser("run", help="reconstruct a video or a folder of photos")
     run.add_argument("video", nargs="+", help="a video (mp4, mov, ...) or a folder of photos of one object")
     run.add_argument("--out", default=".", help="folder that gets results/NAME and the files to print (here)")
-    run.add_argument("--height", help="true height of the object, as 95mm: writes NAME.stl and NAME.glb to scale")
+    size = run.add_mutually_exclusive_group()
+    size.add_argument("--height", help="true height of the object, as 95mm: writes NAME.stl and NAME.glb to scale")
+    size.add_argument("--tag", metavar="SIDE", help="the same by an ArUco or AprilTag marker in the scene, as 40mm")
+    size.add_argument("--board", metavar="CxR:SIDE", help="the same by a checkerboard, C x R inner corners: 9x6:25mm")
     run.add_argument("--quality", choices=QUALITIES, default="normal", help="draft is fast, fine is slow")
     run.add_argument("--cores", type=_read_cores, default=count_cores(), help="cores to use (all)")
     run.add_argument("--set", action="append", metavar="STAGE.KEY=VALUE", help="change a parameter; can be repeated")
@@ -71,7 +74,9 @@ def _make_parser() -> argparse.ArgumentParser:
     export = actions.add_parser("export", help="write a mesh upright and to scale, as stl, ply, obj or glb")
     export.add_argument("results", type=Path, help="folder of a sequence, as results/my")
     export.add_argument("file", type=Path, help="a mesh to write, its ending tells the format; or a folder")
-    export.add_argument("--height", help="true height, as 95mm; written in mm, in metres to glb")
+    export.add_argument(
+        "--height", help="true height, as 95mm, if the run did not find the size; written in mm, glb in metres"
+    )
     export.add_argument("--scene", action="store_true", help="write frames, masks, cameras for other tools")
     export.add_argument("--method", default="surface", help="whose mesh (surface)")
     export.set_defaults(act=_export)
@@ -107,20 +112,22 @@ def _show(arguments: argparse.Namespace) -> int:
 
 
 def _export(arguments: argparse.Namespace) -> int:
+    from threedfs.io.scales import find_scale
     from threedfs.run_end.export import export
 
     if arguments.scene and arguments.height:
-        raise UserError("export: expected --scene or --height, got both; a scene is written in scene units.")
+        raise UserError("export: expected --scene or --height, got both; a scene has the size that its run found.")
     if arguments.scene:
         from threedfs.run_end.export_scene import export_scene
 
         count = export_scene(arguments.results, arguments.file, arguments.method)
-        print(f"{arguments.file}: {count} frames, their masks and cameras, in scene units")
+        unit = "scene units" if find_scale(arguments.results) is None else "metres"
+        print(f"{arguments.file}: {count} frames, their masks and cameras, in {unit}")
         return 0
-    if arguments.height is None:
-        raise UserError("export: expected --height, the object's true height, or --scene, got neither.")
-    size = read_height(arguments.height) / (1000 if arguments.file.suffix.lower() == ".glb" else 1)
-    export(arguments.results, str(size), arguments.file, arguments.method)
+    size = None
+    if arguments.height is not None:
+        size = str(read_height(arguments.height) / (1000 if arguments.file.suffix.lower() == ".glb" else 1))
+    export(arguments.results, size, arguments.file, arguments.method)
     print(arguments.file)
     return 0
 

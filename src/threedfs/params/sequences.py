@@ -9,8 +9,15 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from threedfs.errors import UserError
-from threedfs.params.configuration import SEQUENCE_NAME, check_configuration, configuration_schema, explain_name
+from threedfs.params.configuration import (
+    MESH_METHODS,
+    SEQUENCE_NAME,
+    check_configuration,
+    configuration_schema,
+    explain_name,
+)
 from threedfs.params.rendered import bring_render, find_films
+from threedfs.params.sizes import read_scale_entry
 
 SEQUENCE_FILES = ("source", "cameras", "calibration", "truth_masks", "truth_cameras", "truth_mesh", "truth_depth")
 """What a sequence's entry names: files and folders that must be there."""
@@ -47,6 +54,7 @@ def load_sequences(
     _check_known("evaluate.cylinder_sequences", config["evaluate"]["cylinder_sequences"], named)
     _check_tried(sequences, tried)
     _check_truth(sequences)
+    _check_scales(sequences, config["methods"])
     return set_aside_missing({name: {**entry, "depth_experiment": name in tried} for name, entry in sequences.items()})
 
 
@@ -69,10 +77,10 @@ def list_sequences(
     Returns
     -------
     dict of str to dict
-        `SEQUENCE_FILES`: paths or None; dataset: str; intrinsics: list of float or None; object: bool; depth_scale:
-        float; depth_camera: dict or None; settings: dict of sections of the configuration, its own
-        values; rendered: the take that is filmed for the sequence, or None. The paths of a
-        rendered sequence are results of the run.
+        `SEQUENCE_FILES`: paths or None; dataset: str; intrinsics: list of float or None; object: bool; scale: dict
+        as of `read_scale_entry`, or None; depth_scale: float; depth_camera: dict or None; settings: dict of sections
+        of the configuration, its own values; rendered: the take that is filmed for the sequence, or
+        None. The paths of a rendered sequence are results of the run.
 
     Raises
     ------
@@ -99,7 +107,14 @@ def list_sequences(
     sequences = sequences or {"sample": _sample(home)}
     if config["skip_absent"]:
         sequences = _skip_absent(sequences, note)
-    return {name: {**entry, "dataset": entry["dataset"] or config["dataset"]} for name, entry in sequences.items()}
+    return {
+        name: {
+            **entry,
+            "dataset": entry["dataset"] or config["dataset"],
+            "scale": read_scale_entry(entry["scale"], f"sequences.{name}.scale"),
+        }
+        for name, entry in sequences.items()
+    }
 
 
 def set_aside_missing(sequences: Mapping[str, Mapping[str, Any]]) -> tuple[dict[str, dict[str, Any]], dict[str, str]]:
@@ -158,6 +173,16 @@ def _check_truth(sequences: Mapping[str, dict[str, Any]]) -> None:
                 )
 
 
+def _check_scales(sequences: Mapping[str, dict[str, Any]], methods: Sequence[str]) -> None:
+    for name, entry in sequences.items():
+        height = entry["scale"] is not None and entry["scale"]["source"] == "height"
+        if height and (not entry["object"] or not set(methods) & set(MESH_METHODS)):
+            raise UserError(
+                f"sequences.{name}.scale.height: expected a method with a mesh, whose height that is, found none; add "
+                "surface to methods, or give tag or board."
+            )
+
+
 def _skip_absent(sequences: Mapping[str, dict[str, Any]], note: Callable[[str], Any]) -> dict[str, dict[str, Any]]:
     present = {name: entry for name, entry in sequences.items() if entry["rendered"] or os.path.exists(entry["source"])}
     if not present:
@@ -191,6 +216,7 @@ def _flatten(entry: Mapping[str, Any]) -> dict[str, Any]:
         "rendered": entry.get("rendered"),
         "intrinsics": entry.get("intrinsics"),
         "object": entry.get("object", True),
+        "scale": entry.get("scale"),
         "depth_scale": truth.get("truth_depth_scale", _DEPTH_SCALE),
         "depth_camera": truth.get("truth_depth_camera"),
         "settings": entry.get("settings", {}),

@@ -27,7 +27,13 @@ from threedfs.io.metrics import read_metrics, write_metrics
 from threedfs.params.schema import STAGES
 from threedfs.run_end.logs import find_failures, read_actions
 
-_WATCHED = ("02_poses/poses.json", "11_object/*/mesh.ply", "12_evaluate/**/*.csv", "**/logs/**/*.log")
+_WATCHED = (
+    "02_poses/poses.json",
+    "11_object/*/mesh.ply",
+    "11_object/scale.json",
+    "12_evaluate/**/*.csv",
+    "**/logs/**/*.log",
+)
 """Files of a sequence that its report is older than, if it is out of date."""
 
 TABLES = {

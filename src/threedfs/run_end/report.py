@@ -21,8 +21,11 @@ from threedfs.io.depth_maps import read_depth_map
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
 from threedfs.io.poses import Poses, read_poses
+from threedfs.io.scales import find_scale, tell_scale
 from threedfs.io.textured_meshes import read_textured_obj
 from threedfs.io.volumes import read_silhouettes, read_support
+from threedfs.object.stand import height_on
+from threedfs.params.configuration import MESH_METHODS
 from threedfs.report.camera_path import draw_path, widest_gap
 from threedfs.report.findings import Facts, Finding, judge
 from threedfs.report.page import KeyframePictures, Report, write_page
@@ -37,12 +40,7 @@ _LONGEST, _STILL = 420, 900
 _AGREED = 0.5
 """Share of the photographs at a vertex that must agree on it."""
 _PIXELS = ("gc_2d3d_pixel", "gc_2d")
-_MESHES = (
-    *("surface", "sdf_2d3d_voxel", "gc_select", "gc_2d3d_voxel", "volumetric_gc", "deformed_sdf", "fused_sdf"),
-    *("tsdf", "soft_maximum", "hard_maximum", "poisson"),
-)
-"""Methods whose mesh is shown, the first that was run."""
-_MASKS = (*_PIXELS, *_MESHES)
+_MASKS = (*_PIXELS, *MESH_METHODS)
 _FILES = {
     "the object with photographs on it, upright: open it in any viewer": "mesh.glb",
     "the object in full detail": "mesh.ply",
@@ -87,6 +85,7 @@ def write_report(folder: Path, context: Context) -> Path:
         viewer="" if failed else _show_mesh(folder, known),
         path=draw_path(known.poses.views, known.keyframes, known.place) if known.place else "",
         keyframes=tuple(_picture_keyframes(folder, known, with_masks=not failed)),
+        size="" if failed else _tell_size(folder, known),
         files={} if failed else _find_files(folder),
         left_out=known.poses.unposed if known.poses else (),
         scores=_tabulate(context.metrics),
@@ -150,7 +149,7 @@ def _judge(folder: Path, known: _Known) -> list[Finding]:
 
 def find_method(folder: Path) -> str | None:
     """Return the method whose mesh of a sequence is the one to look at, None without any mesh."""
-    return next((name for name in _MESHES if (folder / "11_object" / name / "mesh.ply").is_file()), None)
+    return next((name for name in MESH_METHODS if (folder / "11_object" / name / "mesh.ply").is_file()), None)
 
 
 def find_masks(folder: Path) -> Path | None:
@@ -219,6 +218,15 @@ def _picture_keyframes(folder: Path, known: _Known, with_masks: bool) -> Iterato
             pictures["depth"] = color_depth(seen, keyframe)
             pictures["normals"] = color_normals(normals_from_depth(keyframe.view.camera, seen))
         yield KeyframePictures(name, {kind: embed_image(each, _LONGEST, 75) for kind, each in pictures.items()})
+
+
+def _tell_size(folder: Path, known: _Known) -> str:
+    scale = find_scale(folder)
+    if scale is None or known.place is None or known.method is None:
+        return ""
+    height = height_on(read_mesh(folder / "11_object" / known.method / "mesh.ply"), known.place.plane)
+    unit = 1000 * scale.metres_per_unit
+    return f"{unit * height:.1f} mm tall; a scene unit is {unit:.2f} mm. Found by a {tell_scale(scale)}."
 
 
 def _find_files(folder: Path) -> dict[str, str]:
