@@ -14,8 +14,10 @@ import numpy as np
 from av.sidedata.sidedata import Type as SideDataType
 
 from threedfs.errors import UserError
+from threedfs.frames.hdr import TRANSFERS, tone_map
 from threedfs.frames.picture import Picture, name_video_frame
 
+_FULL_RANGE = 2  # as FFmpeg numbers ranges
 _EXPECTED = "expected a video (mp4 or mov) or a folder of photos"
 
 
@@ -149,7 +151,12 @@ def _upright_shape(frame):
 
 
 def _upright_image(frame):
-    return orient(frame.to_ndarray(format="rgb24"), _display_matrix(frame))
+    if frame.color_trc in TRANSFERS:
+        full_range = frame.color_range == _FULL_RANGE
+        image = tone_map(frame.to_ndarray(format="yuv444p16le"), frame.color_trc, full_range=full_range)
+    else:
+        image = frame.to_ndarray(format="rgb24")
+    return orient(image, _display_matrix(frame))
 
 
 def orient(image: np.ndarray, shown_from_stored: np.ndarray) -> np.ndarray:
