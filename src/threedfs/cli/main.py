@@ -67,6 +67,10 @@ def _make_parser() -> argparse.ArgumentParser:
     run.add_argument("--set", action="append", metavar="STAGE.KEY=VALUE", help="change a parameter; can be repeated")
     run.set_defaults(act=_run)
 
+    check = actions.add_parser("check", help="tell in seconds whether a video or photos can be used")
+    check.add_argument("video", nargs="+", help="a video (mp4, mov, ...) or a folder of photos of one object")
+    check.set_defaults(act=_check)
+
     show = actions.add_parser("show", help="open the report of a sequence in the browser")
     show.add_argument("results", type=Path, help="its folder, as results/my")
     show.set_defaults(act=_show)
@@ -98,6 +102,12 @@ def _run(arguments: argparse.Namespace) -> int:
     from threedfs.cli.run import run
 
     return run(arguments)
+
+
+def _check(arguments: argparse.Namespace) -> int:
+    from threedfs.cli.check import check
+
+    return check(arguments)
 
 
 def _show(arguments: argparse.Namespace) -> int:

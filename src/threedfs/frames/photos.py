@@ -120,8 +120,8 @@ def _learn_heif(folder: Path) -> None:
         from pillow_heif import register_heif_opener
     except ImportError as fault:
         raise UserError(
-            f"{folder}: expected the package pillow-heif to read its HEIC photos, found none; run make setup, or convert "
-            "them to jpg."
+            f"{folder}: expected the package pillow-heif to read its HEIC photos, found none; run make setup, or "
+            "convert them to jpg."
         ) from fault
     register_heif_opener(thumbnails=False)
 
