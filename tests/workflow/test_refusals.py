@@ -20,6 +20,18 @@ CASES = {
         "sequences: {mug: {source: config, truth: {masks: m}}}",
         "sequences.mug.truth.masks: expected a file or folder, found no m",
     ),
+    "two sizes": (
+        "sequences: {mug: {source: config, scale: {tag: 4cm, height: 9cm}}}",
+        "sequences.mug.scale: expected one of tag, board and height, got tag and height",
+    ),
+    "no length": (
+        "sequences: {mug: {source: config, scale: {board: {corners: [9, 6], square: wide}}}}",
+        "sequences.mug.scale.board.square: expected a length such as 95mm",
+    ),
+    "height of no mesh": (
+        "methods: [gc_2d]\nsequences: {mug: {source: config, scale: {height: 9cm}}}",
+        "sequences.mug.scale.height: expected a method with a mesh",
+    ),
     "no source": ("sequences: {mug: {cameras: config}}", "sequences.mug: expected the key source"),
     "source and take": (
         "sequences: {mug: {source: config, rendered: books}}",
