@@ -22,6 +22,7 @@ include: "workflow/rules/stereo.smk"
 include: "workflow/rules/depth.smk"
 include: "workflow/rules/fusion.smk"
 include: "workflow/rules/locate.smk"
+include: "workflow/rules/scale.smk"
 include: "workflow/rules/densify.smk"
 include: "workflow/rules/deform.smk"
 include: "workflow/rules/segment.smk"
@@ -43,11 +44,13 @@ rule all:
             for method in METHODS
             for name in results_of_method(method)
         ],
+        [f"results/{sequence}/11_object/scale.json" for sequence in MEASURED],
         "results/tables/metrics.csv",
 
 
 onstart:
     wait_for_cluster()
+    forget_scales()
     look_on_demand()
 
 

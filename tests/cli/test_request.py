@@ -4,7 +4,14 @@ from pathlib import Path
 
 import pytest
 
-from threedfs.cli.request import list_requests, make_configuration, name_sequence, read_height, read_settings
+from threedfs.cli.request import (
+    list_requests,
+    make_configuration,
+    name_sequence,
+    read_height,
+    read_scale,
+    read_settings,
+)
 from threedfs.errors import UserError
 from threedfs.params.sequences import RUN_FILES
 
@@ -20,6 +27,36 @@ def test_a_height_is_read_in_its_unit(text, millimetres):
 def test_what_is_no_height_is_refused(text):
     with pytest.raises(UserError, match="--height: expected a length"):
         read_height(text)
+
+
+@pytest.mark.parametrize(
+    ("flags", "entry"),
+    [
+        (("40mm", None, None), {"tag": "40mm"}),
+        ((None, "9x6:25mm", None), {"board": {"corners": [9, 6], "square": "25mm"}}),
+        ((None, None, "9.5cm"), {"height": "9.5cm"}),
+        ((None, None, None), None),
+    ],
+)
+def test_what_tells_the_size_goes_into_the_configuration(tmp_path, flags, entry):
+    (tmp_path / "mug.mp4").touch()
+    assert read_scale(*flags) == entry
+    (own,) = make_configuration(list_requests([str(tmp_path / "mug.mp4")], entry), {})["sequences"].values()
+    assert own.get("scale") == entry
+
+
+@pytest.mark.parametrize(
+    ("flags", "said"),
+    [
+        (("big", None, None), "--tag: expected a length"),
+        ((None, "9x6", None), "--board: expected inner corners .*9x6:25mm"),
+        ((None, "2x6:25mm", None), "--board: expected inner corners"),
+        ((None, "9x6:wide", None), "--board: expected a length"),
+    ],
+)
+def test_what_tells_no_size_is_refused(flags, said):
+    with pytest.raises(UserError, match=said):
+        read_scale(*flags)
 
 
 @pytest.mark.parametrize(

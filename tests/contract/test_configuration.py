@@ -58,6 +58,7 @@ def test_every_module_of_parameters_is_a_stage():
         "rules",
         "sequences",
         "smoothing",
+        "sizes",
     }
     assert modules - shared == set(declared_stages()) <= set(STAGES)
 

@@ -1,5 +1,7 @@
 """Exact: which photos of a folder are given, upright; damaged and odd ones are left out and told."""
 
+import sys
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -91,4 +93,29 @@ def test_two_photos_of_one_name_are_refused(tmp_path, drawn, progress):
 
 def test_a_folder_without_photos_is_refused(tmp_path, progress):
     with pytest.raises(UserError, match=r"none of 0 such files can be read\.$"):
+        scan_photos(tmp_path, progress)
+
+
+@pytest.mark.parametrize("orientation", [1, 3, 6, 8])
+def test_photos_of_phones_are_read_upright(tmp_path, drawn, progress, orientation):
+    """To compression: HEIC turns its pictures by itself, and they must not be turned twice."""
+    heif = pytest.importorskip("pillow_heif", reason="pillow-heif is not installed here")
+    heif.register_heif_opener()
+    turns = {1: 0, 3: 2, 6: 1, 8: -1}[orientation]
+    exif = Image.Exif()
+    exif[274] = orientation
+    stored = np.ascontiguousarray(np.rot90(drawn.draw(0), turns))
+    Image.fromarray(stored).save(tmp_path / "IMG_1.HEIC", quality=95, exif=exif.tobytes())
+    photos = scan_photos(tmp_path, progress)
+    (picture,) = photos.pictures()
+    image = picture.load()
+    assert photos.shape == image.shape[:2] == drawn.shape
+    assert drawn.corners(image) == {"red": "upper left", "green": "lower right"}
+    assert np.abs(image.astype(int) - drawn.draw(0)).mean() < 6
+
+
+def test_photos_of_phones_are_named_where_nothing_reads_them(tmp_path, progress, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pillow_heif", None)
+    (tmp_path / "IMG_1.HEIC").write_bytes(b"ftypheic")
+    with pytest.raises(UserError, match="expected the package pillow-heif to read its HEIC photos, found none"):
         scan_photos(tmp_path, progress)

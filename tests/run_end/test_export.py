@@ -13,9 +13,11 @@ from threedfs.cli.main import main
 from threedfs.errors import UserError
 from threedfs.io.colored_meshes import read_colored_mesh, write_colored_mesh
 from threedfs.io.meshes import read_mesh, write_mesh
+from threedfs.io.scales import Scale, write_scale
 from threedfs.io.textured_meshes import read_textured_obj, write_textured_obj
 from threedfs.io.volumes import write_support
 from threedfs.run_end.export import export, export_levels
+from threedfs.run_end.results import open_results
 from threedfs.texture.textured import TexturedMesh
 from threedfs.types import Box, Mesh, Plane, Support
 
@@ -230,3 +232,25 @@ def test_the_command_tells_faces_and_error_and_refuses_none(fine, capsys):
         with pytest.raises(SystemExit):
             main([*words, wrong])
         assert "expected whole numbers of at least 100" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("name", "up", "height"), [("ball.stl", 2, 500.0), ("ball.glb", 1, 0.5)])
+def test_the_scale_of_a_run_is_that_of_its_exports(results, name, up, height):
+    """Exact: a ball two units tall, of a quarter of a metre each; millimetres, GLB in metres."""
+    write_scale(results / "11_object/scale.json", Scale(0.25, 0.004, "tag", 0.04, 9, "4x4 1"), {})
+    tall = float(np.ptp(read_mesh(results / "11_object/surface/mesh.ply").vertices @ [0.6, 0.0, 0.8]))
+    assert export(results, None, results / name) == pytest.approx(height * tall / 2)
+    assert np.ptp(read_mesh(results / name).vertices[:, up]) == pytest.approx(height * tall / 2, rel=1e-5)
+    assert open_results_of(results).scale().metres_per_unit == 0.25
+
+
+def test_an_export_without_any_size_is_refused(results):
+    with pytest.raises(UserError, match=r"expected --height.*--tag, --board or --height.*found neither"):
+        export(results, None, results / "ball.stl")
+    assert not (results / "ball.stl").exists()
+
+
+def open_results_of(folder):
+    """Open results as a user does."""
+    (folder / "02_poses").mkdir()
+    return open_results(folder)

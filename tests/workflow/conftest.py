@@ -23,6 +23,7 @@ SIGNATURES = {
     "frames": ("source masks", "frames", ""),
     "features": ("frames", "features", ""),
     "poses": ("frames features cameras calibration", "poses points", "intrinsics"),
+    "scale": ("frames poses mesh support", "scale", "known"),
     "keyframes": ("frames poses points masks", "keyframes", ""),
     "shrink": ("frames poses keyframes", "crops views", ""),
     "crops": ("source poses points keyframes support", "crops views", ""),

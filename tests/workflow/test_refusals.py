@@ -14,6 +14,18 @@ CASES = {
         "sequences: {mug: {source: mug.mp4}}",
         "sequences.mug.source: expected a file or folder, found no",
     ),
+    "two sizes": (
+        "sequences: {mug: {source: config, scale: {tag: 4cm, height: 9cm}}}",
+        "sequences.mug.scale: expected one of tag, board and height, got tag and height",
+    ),
+    "no length": (
+        "sequences: {mug: {source: config, scale: {board: {corners: [9, 6], square: wide}}}}",
+        "sequences.mug.scale.board.square: expected a length such as 95mm",
+    ),
+    "height of no mesh": (
+        "methods: [gc_2d]\nsequences: {mug: {source: config, scale: {height: 9cm}}}",
+        "sequences.mug.scale.height: expected a method with a mesh",
+    ),
     "unknown method": ("methods: [magic]", "methods.0: expected one of fused_sdf"),
     "not a number": ("depth: {photometric_weight: .nan}", "expected a finite number, got nan"),
     "name that is a number": ("sequences: {7: {source: config}}", "put it in quotes, as '7'"),

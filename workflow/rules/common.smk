@@ -27,6 +27,7 @@ except UserError as fault:
     sys.exit(f"threedfs: {fault}")
 
 OBJECTS = [name for name in SEQUENCES if SEQUENCES[name]["object"]]
+MEASURED = [name for name in SEQUENCES if SEQUENCES[name]["scale"]]
 TRIED = [name for name in SEQUENCES if SEQUENCES[name]["depth_experiment"]]
 # Jobs on a sequence that can use two cores get them where there is one sequence. Of several, others fill the second core:
 # it would idle while such a job waits for both, and through half of the work on poses.

@@ -3,7 +3,7 @@
 from functools import lru_cache
 
 from threedfs.inputs.check import find_fault
-from threedfs.params.configuration import JOINT_METHODS
+from threedfs.params.configuration import JOINT_METHODS, MESH_METHODS
 from threedfs.io.truth_files import choose_with_depth
 from threedfs.memory import estimate_memory, estimate_memory_of_keyframes
 
@@ -150,6 +150,33 @@ def appearance_of_method(wildcards):
     """Return what the segmentation that a method takes the object from has learnt of its looks."""
     labels = Path(labels_of_method(wildcards))
     return str(labels.parent / "appearance" / labels.name)
+
+
+def mesh_to_measure():
+    """Return the method whose mesh is the one to look at, None without any mesh."""
+    return next((method for method in MESH_METHODS if method in METHODS), None)
+
+
+def known_of(wildcards):
+    """Return what is known of a sequence's size, and by which mesh it is measured if that is the object's height."""
+    known = SEQUENCES[wildcards.sequence]["scale"]
+    return known | (
+        {"method": mesh_to_measure()} if known["source"] == "height" else {}
+    )
+
+
+def to_measure(path, *sources):
+    """Return an input function: a file, if the size of a sequence is found by one of the sources, or nothing."""
+
+    def find(wildcards):
+        known = SEQUENCES[wildcards.sequence]["scale"]
+        return (
+            path.format(sequence=wildcards.sequence, method=mesh_to_measure())
+            if known and known["source"] in sources
+            else []
+        )
+
+    return find
 
 
 def field_to_search(wildcards):

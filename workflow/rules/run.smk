@@ -20,6 +20,12 @@ def wait_for_cluster():
         )
 
 
+def forget_scales():
+    """Remove the scales of sequences that do not ask for one now: they may be of another mesh than the one made next."""
+    for sequence in set(SEQUENCES) - set(MEASURED):
+        Path("results", sequence, "11_object/scale.json").unlink(missing_ok=True)
+
+
 def look_on_demand():
     """Let Snakemake look for the next job when one ends and only then, where jobs run on this machine.
 

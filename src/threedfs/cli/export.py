@@ -20,7 +20,10 @@ def add_export(actions: argparse._SubParsersAction) -> None:
     parser.add_argument(
         "file", type=Path, help="what to write: a mesh (stl, ply, obj, glb), a volume (.ome.zarr), or a folder"
     )
-    parser.add_argument("--height", help="true height, as 95mm; meshes are written in mm, glb and volumes in metres")
+    parser.add_argument(
+        "--height",
+        help="true height, as 95mm, if the run did not find the size; meshes are in mm, glb and volumes in metres",
+    )
     parser.add_argument(
         "--faces",
         type=_read_faces,
@@ -56,17 +59,19 @@ def export(arguments: argparse.Namespace) -> int:
 
 def _export_scene(arguments: argparse.Namespace) -> int:
     # what is numeric takes a second to import: --help need not wait for it
+    from threedfs.io.scales import find_scale
     from threedfs.run_end.export_scene import export_scene
 
     if arguments.height or arguments.faces:
         raise UserError(
-            f"export: expected --scene or {'--height' if arguments.height else '--faces'}, got both; a scene is "
-            "written in scene units, without a mesh."
+            f"export: expected --scene or {'--height' if arguments.height else '--faces'}, got both; a scene has the "
+            "size that its run found, and no mesh."
         )
     asked = arguments.masks or ["colmap", "nerfstudio"]
     kinds = _MASKS if "all" in asked else tuple(dict.fromkeys(asked))
     count = export_scene(arguments.results, arguments.file, arguments.method, kinds)
-    print(f"{arguments.file}: {count} frames, their masks and cameras, in scene units")
+    unit = "scene units" if find_scale(arguments.results) is None else "metres"
+    print(f"{arguments.file}: {count} frames, their masks and cameras, in {unit}")
     return 0
 
 
@@ -84,11 +89,10 @@ def _export_volume(arguments: argparse.Namespace) -> int:
 def _export_mesh(arguments: argparse.Namespace) -> int:
     from threedfs.run_end.export import export, export_levels
 
-    if arguments.height is None:
-        raise UserError("export: expected --height, the object's true height, or --scene, got neither.")
-    millimetres = read_height(arguments.height)
     in_metres = arguments.file.suffix.lower() == ".glb"
-    size = str(millimetres / 1000 if in_metres else millimetres)
+    size = None
+    if arguments.height is not None:
+        size = str(read_height(arguments.height) / (1000 if in_metres else 1))
     if not arguments.faces:
         export(arguments.results, size, arguments.file, arguments.method)
         print(arguments.file)

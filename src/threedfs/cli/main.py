@@ -61,11 +61,18 @@ def _make_parser() -> argparse.ArgumentParser:
     run = actions.add_parser("run", help="reconstruct a video or a folder of photos")
     run.add_argument("video", nargs="+", help="a video (mp4, mov, ...) or a folder of photos of one object")
     run.add_argument("--out", default=".", help="folder that gets results/NAME and the files to print (here)")
-    run.add_argument("--height", help="true height of the object, as 95mm: writes NAME.stl and NAME.glb to scale")
+    size = run.add_mutually_exclusive_group()
+    size.add_argument("--height", help="true height of the object, as 95mm: writes NAME.stl and NAME.glb to scale")
+    size.add_argument("--tag", metavar="SIDE", help="the same by an ArUco or AprilTag marker in the scene, as 40mm")
+    size.add_argument("--board", metavar="CxR:SIDE", help="the same by a checkerboard, C x R inner corners: 9x6:25mm")
     run.add_argument("--quality", choices=QUALITIES, default="normal", help="draft is fast, fine is slow")
     run.add_argument("--cores", type=_read_cores, default=count_cores(), help="cores to use (all)")
     run.add_argument("--set", action="append", metavar="STAGE.KEY=VALUE", help="change a parameter; can be repeated")
     run.set_defaults(act=_run)
+
+    check = actions.add_parser("check", help="tell in seconds whether a video or photos can be used")
+    check.add_argument("video", nargs="+", help="a video (mp4, mov, ...) or a folder of photos of one object")
+    check.set_defaults(act=_check)
 
     show = actions.add_parser("show", help="open the report of a sequence in the browser")
     show.add_argument("results", type=Path, help="its folder, as results/my")
@@ -93,6 +100,12 @@ def _run(arguments: argparse.Namespace) -> int:
     from threedfs.cli.run import run
 
     return run(arguments)
+
+
+def _check(arguments: argparse.Namespace) -> int:
+    from threedfs.cli.check import check
+
+    return check(arguments)
 
 
 def _show(arguments: argparse.Namespace) -> int:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import os
 import re
 import zlib
@@ -16,12 +15,12 @@ import yaml
 from threedfs.errors import UserError
 from threedfs.params.configuration import LONGEST_NAME
 from threedfs.params.sequences import RUN_FILES
+from threedfs.params.sizes import read_board, read_length
 
 INTERRUPTED = 130
 """Exit status after Ctrl-C, as of a shell."""
 QUALITIES = ("draft", "normal", "fine")
 _OWN = ("sequences", "video")
-_MILLIMETRES = {"mm": 1.0, "cm": 10.0, "m": 1000.0, "in": 25.4, "": 1.0}
 
 
 @dataclass(frozen=True)
@@ -33,10 +32,13 @@ class Request:
     source : Path
     name : str
         Of its folder of results.
+    scale : mapping or None
+        What tells its size, as the configuration has it: `{"tag": "40mm"}`.
     """
 
     source: Path
     name: str
+    scale: Mapping[str, Any] | None = None
 
 
 def read_height(text: str) -> float:
@@ -52,11 +54,31 @@ def read_height(text: str) -> float:
     >>> read_height("9.5cm"), read_height("95")
     (95.0, 95.0)
     """
-    match = re.fullmatch(r"\s*([0-9]*\.?[0-9]+(?:[eE][-+]?\d+)?)\s*(mm|cm|m|in|)\s*", text)
-    height = float(match[1]) * _MILLIMETRES[match[2]] if match else 0.0
-    if not 0 < height < math.inf:
-        raise UserError(f"--height: expected a length such as 95mm, 9.5cm or 0.095m, got {text!r}.")
-    return height
+    return read_length(text, "--height")
+
+
+def read_scale(tag: str | None, board: str | None, height: str | None) -> dict[str, Any] | None:
+    """Return what the flags of `threedfs run` say of the size, as the configuration has it; None without any.
+
+    Raises
+    ------
+    UserError
+        If one is not of its form.
+
+    Examples
+    --------
+    >>> read_scale(None, "9x6:25mm", None)
+    {'board': {'corners': [9, 6], 'square': '25mm'}}
+    """
+    if tag is not None:
+        read_length(tag, "--tag")
+        return {"tag": tag}
+    if board is not None:
+        return {"board": read_board(board)}
+    if height is not None:
+        read_height(height)
+        return {"height": height}
+    return None
 
 
 def name_sequence(source: Path) -> str:
@@ -90,8 +112,8 @@ def count_cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def list_requests(sources: Sequence[str]) -> list[Request]:
-    """Return what is to be reconstructed, each under a name of its own.
+def list_requests(sources: Sequence[str], scale: Mapping[str, Any] | None = None) -> list[Request]:
+    """Return what is to be reconstructed, each under a name of its own; what tells the size is the same of all.
 
     Raises
     ------
@@ -109,7 +131,7 @@ def list_requests(sources: Sequence[str]) -> list[Request]:
                 f"{text}: expected a name of its own, but its results would be called {name}, like those of "
                 f"{requests[name].source}; rename one."
             )
-        requests[name] = Request(source.resolve(), name)
+        requests[name] = Request(source.resolve(), name, scale)
     return list(requests.values())
 
 
@@ -149,5 +171,8 @@ def read_settings(changes: Sequence[str]) -> dict[str, Any]:
 
 def make_configuration(requests: Sequence[Request], changes: Mapping[str, Any]) -> dict[str, Any]:
     """Return what the workflow is given."""
-    sequences = {request.name: {"source": str(request.source)} for request in requests}
+    sequences = {
+        request.name: {"source": str(request.source)} | ({"scale": dict(request.scale)} if request.scale else {})
+        for request in requests
+    }
     return {"dataset": "mine", **changes, "sequences": sequences}

@@ -16,12 +16,13 @@ from threedfs.cli.request import (
     Request,
     count_cores,
     list_requests,
-    read_height,
+    read_scale,
     read_settings,
     stem_of,
 )
 from threedfs.cli.workflow import run_workflow
 from threedfs.errors import UserError
+from threedfs.io.scales import find_scale, tell_scale
 from threedfs.report.findings import sum_up
 from threedfs.run_end.export import export
 from threedfs.run_end.report import find_masks, find_method, find_out
@@ -40,8 +41,8 @@ def run(arguments: Namespace) -> int:
         If something that was asked for cannot be.
     """
     begun = time.monotonic()
-    requests, changes = list_requests(arguments.video), read_settings(arguments.set or [])
-    height = None if arguments.height is None else read_height(arguments.height)
+    scale = read_scale(arguments.tag, arguments.board, arguments.height)
+    requests, changes = list_requests(arguments.video, scale), read_settings(arguments.set or [])
     out = Path(arguments.out).expanduser().resolve()
     for request in requests:
         if request.name != stem_of(request.source):
@@ -54,7 +55,7 @@ def run(arguments: Namespace) -> int:
     for request in requests:
         # after a failure meshes may be of an earlier run; of several sequences, one that is not named has ended well
         if not outcome.status or (failed and request not in failed):
-            _conclude(request, out, height)
+            _conclude(request, out)
         else:
             _name_report(out / "results" / request.name)
     if not outcome.status:
@@ -73,6 +74,7 @@ def reconstruct(
     quality: str = "normal",
     cores: int | None = None,
     settings: Mapping[str, Any] | None = None,
+    scale: Mapping[str, Any] | None = None,
 ) -> Results:
     """Reconstruct the object of a video, or of a folder of photos; what was done before is not done again.
 
@@ -87,6 +89,9 @@ def reconstruct(
         All, if not given.
     settings : mapping, optional
         Parameters that differ from the defaults, by stage: `{"depth": {"iterations": 5}}`.
+    scale : mapping, optional
+        What tells the size: `{"tag": "40mm"}`, `{"board": {"corners": [9, 6], "square": "25mm"}}` or
+        `{"height": "95mm"}`.
 
     Raises
     ------
@@ -97,7 +102,7 @@ def reconstruct(
         raise UserError(f"quality: expected one of {', '.join(QUALITIES)}, got {quality}.")
     if cores is not None and cores < 1:
         raise UserError(f"cores: expected a whole number of at least 1, got {cores}.")
-    requests, folder = list_requests([str(video)]), Path(out).expanduser().resolve()
+    requests, folder = list_requests([str(video)], scale), Path(out).expanduser().resolve()
     outcome = run_workflow(requests, dict(settings or {}), folder, quality, cores or count_cores())
     if outcome.interrupted:
         raise KeyboardInterrupt
@@ -106,8 +111,8 @@ def reconstruct(
     return open_results(folder / "results" / requests[0].name)
 
 
-def _conclude(request: Request, out: Path, height: float | None) -> None:
-    """Say what a run made of a video, and write the files for printing if its height is known."""
+def _conclude(request: Request, out: Path) -> None:
+    """Say what a run made of a video, and write the files for printing if its size is known."""
     folder = out / "results" / request.name
     summary = read_summary(folder)
     methods = summary.methods if summary else None  # what others left in the folder is of earlier runs
@@ -116,8 +121,9 @@ def _conclude(request: Request, out: Path, height: float | None) -> None:
         for what, name in _MESHES.items():
             if (folder / "11_object" / method / name).is_file():
                 print(f"{what:8} {folder / '11_object' / method / name}")
-        _export_to_scale(folder, out / request.name, height, method)
-    elif height is not None:
+        if request.scale is not None:
+            _export_to_scale(folder, out / request.name, method)
+    elif request.scale is not None:
         print("stl      none: no method with a mesh was run")
     if masks is not None:
         print(f"masks    {masks}, {len(list(masks.glob('*.png')))} of them")
@@ -134,14 +140,17 @@ def _conclude(request: Request, out: Path, height: float | None) -> None:
             print(f"         {finding.advice}")
 
 
-def _export_to_scale(folder: Path, stem: Path, height: float | None, method: str) -> None:
-    if height is None:
+def _export_to_scale(folder: Path, stem: Path, method: str) -> None:
+    scale = find_scale(folder)
+    if scale is None:
+        print("stl      none: the size was not found")
         return
-    for ending, unit, size in ((".stl", "mm", height), (".glb", "m", height / 1000)):
+    print(f"size     {tell_scale(scale)}")
+    for ending, unit in ((".stl", "mm"), (".glb", "m")):
         file = stem.with_name(stem.name + ending)
         try:
-            export(folder, str(size), file, method)
-            print(f"{ending[1:]:8} {file}, {size:g} {unit} tall")
+            size = export(folder, None, file, method)
+            print(f"{ending[1:]:8} {file}, {size:.4g} {unit} tall")
         except OSError as fault:
             print(f"{ending[1:]:8} none: {file} cannot be written: {fault.strerror}")
 

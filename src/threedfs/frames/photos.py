@@ -17,7 +17,8 @@ from threedfs.errors import UserError
 from threedfs.frames.picture import Picture
 from threedfs.progress import Progress
 
-PHOTO_SUFFIXES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp")
+HEIF_SUFFIXES = (".heic", ".heif")
+PHOTO_SUFFIXES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".bmp", ".webp", *HEIF_SUFFIXES)
 _EXIF_ORIENTATION = 274
 _LONGEST_NAME = 150  # bytes: results add marks and endings to it
 _NAME = re.compile(r"[^{}\x00-\x1f\x7f]+")  # braces are wildcards of the workflow
@@ -71,6 +72,8 @@ def scan_photos(folder: Path, progress: Progress) -> Photos:
         for file in folder.iterdir()
         if file.is_file() and file.suffix.lower() in PHOTO_SUFFIXES and not file.name.startswith(".")
     )
+    if any(file.suffix.lower() in HEIF_SUFFIXES for file in files):
+        _learn_heif(folder)
     shapes = {}
     unreadable, depth_maps = 0, 0
     for file in files:
@@ -127,6 +130,18 @@ def _peek(file):
         return image.mode, (columns, rows) if turned else (rows, columns)
 
 
+def _learn_heif(folder: Path) -> None:
+    """Teach Pillow the format of phones; it is loaded only where there are such files."""
+    try:
+        from pillow_heif import register_heif_opener
+    except ImportError as fault:
+        raise UserError(
+            f"{folder}: expected the package pillow-heif to read its HEIC photos, found none; run make setup, or "
+            "convert them to jpg."
+        ) from fault
+    register_heif_opener(thumbnails=False)
+
+
 def _load(file):
     try:
         with Image.open(file) as image:
@@ -138,7 +153,7 @@ def _load(file):
 def _name_others(folder: Path) -> str:
     """Name the endings of the files in a folder, and what to do about those of a phone."""
     endings = sorted({file.suffix.lower()[1:] for file in folder.iterdir() if file.is_file() and file.suffix})
-    hint = "; convert them to jpg" if {"heic", "heif", "dng"} & set(endings) else ""
+    hint = "; convert them to jpg" if {"avif", "dng"} & set(endings) else ""
     return f"; it has files that end in {', '.join(endings)}{hint}" if endings else ""
 
 

@@ -14,8 +14,11 @@ import numpy as np
 from av.sidedata.sidedata import Type as SideDataType
 
 from threedfs.errors import UserError
+from threedfs.frames.hdr import TRANSFERS, tone_map
 from threedfs.frames.picture import Picture, name_video_frame
 
+_FULL_RANGE = 2  # as FFmpeg numbers ranges
+_CODECS = {"h264": "H.264", "hevc": "HEVC", "av1": "AV1", "libdav1d": "AV1", "vp9": "VP9"}
 _EXPECTED = "expected a video (mp4 or mov) or a folder of photos"
 _PLAYLISTS = {"hls", "applehttp", "concat", "dash", "sdp", "imf"}  # their pictures lie in other files
 
@@ -32,11 +35,14 @@ class Video:
         its number, also where frames before it could not be decoded.
     shape : tuple of int
         (rows, columns) of its first decodable frame, upright.
+    time_base : float
+        Seconds in a unit of these times.
     """
 
     path: Path
     timestamps: tuple[int, ...]
     shape: tuple[int, int]
+    time_base: float
 
     ordered = True
     unreadable = 0
@@ -46,18 +52,22 @@ class Video:
         """Names of all its frames, decodable or not."""
         return tuple(name_video_frame(index) for index in range(len(self.timestamps)))
 
+    @property
+    def seconds(self) -> float:
+        """From the first frame to the last."""
+        return (self.timestamps[-1] - self.timestamps[0]) * self.time_base
+
     def pictures(self) -> Iterator[Picture]:
         """Decode; yield every frame of the video's size in presentation order, leaving out those that fail."""
         last = -1
         with _opened(self.path) as (container, stream):
-            base = float(stream.time_base)
             for frame in _decode(container, stream):
                 # Equal or missing times, which broken files have, must not give two frames one number.
                 rank = last + 1 if frame.pts is None else bisect_left(self.timestamps, frame.pts)
                 last = max(rank, last + 1)
                 if last >= len(self.timestamps) or _upright_shape(frame) != self.shape:
                     continue
-                seconds = (self.timestamps[last] - self.timestamps[0]) * base
+                seconds = (self.timestamps[last] - self.timestamps[0]) * self.time_base
                 yield Picture(name_video_frame(last), last, seconds, partial(_upright_image, frame))
 
 
@@ -72,6 +82,7 @@ def scan_video(path: Path) -> Video:
     if path.stat().st_size == 0:
         raise UserError(f"{path}: {_EXPECTED}, got an empty file; copy it again.")
     with _opened(path) as (container, stream):
+        time_base = float(stream.time_base)
         timestamps = sorted(
             position if packet.pts is None else packet.pts
             for position, packet in enumerate(_packets(container, stream))
@@ -85,7 +96,25 @@ def scan_video(path: Path) -> Video:
             f"{path}: expected a video with frames, got {len(timestamps)} packets of which none can be decoded; "
             "copy or convert the file again."
         )
-    return Video(path, tuple(timestamps), shape)
+    return Video(path, tuple(timestamps), shape, time_base)
+
+
+def describe_stream(path: Path) -> str:
+    """Say in a few words how a video is made: codec, frames a second, bits, HDR, and whether it is turned."""
+    with _opened(path) as (container, stream):
+        context, rate = stream.codec_context, stream.average_rate
+        words = [_CODECS.get(context.name, context.name)]
+        if rate:
+            words.append(f"{float(rate):.3g} frames a second")
+        frame = next(_decode(container, stream), None)
+        if frame is not None:
+            if frame.color_trc in TRANSFERS:
+                words.append(f"HDR ({TRANSFERS[frame.color_trc]}), brought to ordinary range")
+            elif frame.format.components[0].bits > 8:
+                words.append(f"{frame.format.components[0].bits} bits")
+            if not np.array_equal(np.sign(_display_matrix(frame)), np.eye(2)):
+                words.append("turned upright as its rotation flag says")
+    return ", ".join(words)
 
 
 @contextmanager
@@ -157,7 +186,12 @@ def _upright_shape(frame):
 
 
 def _upright_image(frame):
-    return orient(frame.to_ndarray(format="rgb24"), _display_matrix(frame))
+    if frame.color_trc in TRANSFERS:
+        full_range = frame.color_range == _FULL_RANGE
+        image = tone_map(frame.to_ndarray(format="yuv444p16le"), frame.color_trc, full_range=full_range)
+    else:
+        image = frame.to_ndarray(format="rgb24")
+    return orient(image, _display_matrix(frame))
 
 
 def orient(image: np.ndarray, shown_from_stored: np.ndarray) -> np.ndarray:

@@ -32,6 +32,11 @@ def stand_up(mesh: Mesh, plane: Plane, height: float | None = None) -> Mesh:
     return Mesh((vertices - [middle[0], middle[1], low[2]]) * scale, mesh.faces)
 
 
+def height_on(mesh: Mesh, plane: Plane) -> float:
+    """Return how far a mesh reaches from its lowest to its highest point over a plane, scene units."""
+    return float(np.ptp((mesh.vertices @ axes_on(plane.normal).T)[:, 2]))
+
+
 def turn_y_up(mesh: Mesh) -> Mesh:
     """Turn a mesh whose z points up so that y does, as GLB wants it; not mirrored."""
     x, y, z = mesh.vertices.T

@@ -11,6 +11,7 @@ import jsonschema
 from threedfs.errors import UserError
 from threedfs.params.rendered import RENDERED_KEYS
 from threedfs.params.schema import declared_stages, make_params, stage_schema
+from threedfs.params.sizes import SCALE_SCHEMA
 
 METHODS = (
     "fused_sdf",
@@ -27,6 +28,11 @@ METHODS = (
     "hard_maximum",
     "poisson",
 )
+MESH_METHODS = (
+    *("surface", "sdf_2d3d_voxel", "gc_select", "gc_2d3d_voxel", "volumetric_gc", "deformed_sdf", "fused_sdf"),
+    *("tsdf", "soft_maximum", "hard_maximum", "poisson"),
+)
+"""Methods with a mesh; the first that was run has the one to look at."""
 JOINT_METHODS = ("gc_2d3d_pixel", "gc_2d3d_voxel", "gc_select", "sdf_2d3d_voxel", "surface")
 """Methods that take the object from the joint segmentation: those that have variants."""
 VARIED_STAGES = ("segment", "cut_object", "surface")
@@ -71,6 +77,7 @@ def configuration_schema() -> dict[str, Any]:
             "cameras": _PATH,
             "intrinsics": {**_numbers(4), "type": ["array", "null"]},
             "calibration": _PATH,
+            "scale": SCALE_SCHEMA,
             "object": {"type": "boolean"},
             "truth": {"type": ["object", "null"], "additionalProperties": False, "properties": truth},
             "keyframes_at_truth": {"type": "boolean"},

@@ -31,6 +31,7 @@ video: null
 #     cameras: null                 # given cameras, instead of structure from motion
 #     intrinsics: null              # [fx, fy, cx, cy], for given cameras that are poses alone
 #     calibration: null             # photos or a video of a checkerboard
+#     scale: null                   # {tag: 40mm}, {board: {corners: [9, 6], square: 25mm}} or {height: 95mm}
 #     object: true                  # false: no object is looked for, only the depth experiment runs
 #     settings: {depth: {iterations: 12}}  # its own values of the parameters below
 #     truth: {masks: null, cameras: null, mesh: null, depth: null, depth_scale: 1000, depth_camera: null}
@@ -123,6 +124,9 @@ _KEYS = {
     "given and true cameras that are poses alone: RGB-D Scenes v2, and `NAME.pose.txt`, where it takes the place of "
     "`camera-intrinsics.txt`",
     "sequences.<name>.calibration": "photos or a video of a checkerboard; null: the camera calibrates itself",
+    "sequences.<name>.scale": "what tells the size: `{tag: 40mm}`, the side of the black square of an ArUco "
+    "or AprilTag in the scene; `{board: {corners: [9, 6], square: 25mm}}`, the inner corners and the side of a "
+    "square of a checkerboard; or `{height: 95mm}`, the object's own; exports are then in metres or millimetres",
     "sequences.<name>.rendered": "instead of all of the above and below: a take of the synthetic data set Tabletop-12 "
     "(config/datasets/tabletop12.yaml), filmed by the run with all its truth",
     "sequences.<name>.true_cameras": "of a rendered sequence: take its true cameras as given, instead of structure "

@@ -17,6 +17,7 @@ STAGES = (
     "frames",
     "features",
     "poses",
+    "scale",
     "keyframes",
     "shrink",
     "crops",

@@ -9,8 +9,15 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from threedfs.errors import UserError
-from threedfs.params.configuration import SEQUENCE_NAME, check_configuration, configuration_schema, explain_name
+from threedfs.params.configuration import (
+    MESH_METHODS,
+    SEQUENCE_NAME,
+    check_configuration,
+    configuration_schema,
+    explain_name,
+)
 from threedfs.params.rendered import bring_render, find_films
+from threedfs.params.sizes import read_scale_entry
 
 SEQUENCE_FILES = ("source", "cameras", "calibration", "truth_masks", "truth_cameras", "truth_mesh", "truth_depth")
 """What a sequence's entry names: files and folders that must be there."""
@@ -49,6 +56,7 @@ def load_sequences(
     _check_known("evaluate.cylinder_sequences", config["evaluate"]["cylinder_sequences"], named)
     _check_tried(sequences, tried)
     _check_truth(sequences)
+    _check_scales(sequences, config["methods"])
     return set_aside_missing({name: {**entry, "depth_experiment": name in tried} for name, entry in sequences.items()})
 
 
@@ -72,9 +80,9 @@ def list_sequences(
     -------
     dict of str to dict
         `SEQUENCE_FILES`: paths or None; keyframe_masks: the true masks, if their frames are to be keyframes
-        (`keyframes_at_truth`), or None; dataset: str; intrinsics: list of float or None; object: bool; depth_scale:
-        float; depth_camera: dict or None; settings: dict of sections of the configuration, its own
-        values; rendered: the take that is filmed for the sequence, or None. The paths of a
+        (`keyframes_at_truth`), or None; dataset: str; intrinsics: list of float or None; object: bool; scale: dict as
+        of `read_scale_entry`, or None; depth_scale: float; depth_camera: dict or None; settings: dict of sections of
+        the configuration, its own values; rendered: the take that is filmed for the sequence, or None. The paths of a
         rendered sequence are results of the run.
 
     Raises
@@ -102,10 +110,10 @@ def list_sequences(
     sequences = sequences or {"sample": _sample(home)}
     if config["skip_absent"]:
         sequences = _skip_absent(sequences, note)
-    return {name: _fill_in(entry, config) for name, entry in sequences.items()}
+    return {name: _fill_in(name, entry, config) for name, entry in sequences.items()}
 
 
-def _fill_in(entry: Mapping[str, Any], config: Mapping[str, Any]) -> dict[str, Any]:
+def _fill_in(name: str, entry: Mapping[str, Any], config: Mapping[str, Any]) -> dict[str, Any]:
     """Return a sequence's entry with what holds for the whole run where it does not speak for itself."""
     own = entry["keyframes_at_truth"]
     at_truth = config["keyframes_at_truth"] if own is None else own
@@ -113,6 +121,7 @@ def _fill_in(entry: Mapping[str, Any], config: Mapping[str, Any]) -> dict[str, A
         **entry,
         "dataset": entry["dataset"] or config["dataset"],
         "keyframe_masks": entry["truth_masks"] if at_truth else None,
+        "scale": read_scale_entry(entry["scale"], f"sequences.{name}.scale"),
     }
 
 
@@ -172,6 +181,16 @@ def _check_truth(sequences: Mapping[str, dict[str, Any]]) -> None:
                 )
 
 
+def _check_scales(sequences: Mapping[str, dict[str, Any]], methods: Sequence[str]) -> None:
+    for name, entry in sequences.items():
+        height = entry["scale"] is not None and entry["scale"]["source"] == "height"
+        if height and (not entry["object"] or not set(methods) & set(MESH_METHODS)):
+            raise UserError(
+                f"sequences.{name}.scale.height: expected a method with a mesh, whose height that is, found none; add "
+                "surface to methods, or give tag or board."
+            )
+
+
 def _skip_absent(sequences: Mapping[str, dict[str, Any]], note: Callable[[str], Any]) -> dict[str, dict[str, Any]]:
     present = {name: entry for name, entry in sequences.items() if entry["rendered"] or os.path.exists(entry["source"])}
     if not present:
@@ -207,6 +226,7 @@ def _flatten(entry: Mapping[str, Any]) -> dict[str, Any]:
         "rendered": entry.get("rendered"),
         "intrinsics": entry.get("intrinsics"),
         "object": entry.get("object", True),
+        "scale": entry.get("scale"),
         "depth_scale": truth.get("truth_depth_scale", _DEPTH_SCALE),
         "depth_camera": truth.get("truth_depth_camera"),
         "settings": entry.get("settings", {}),

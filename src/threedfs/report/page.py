@@ -30,6 +30,8 @@ class Report:
     viewer, path : str
         Parts of the page: the mesh, and the camera's path.
     keyframes : tuple of KeyframePictures
+    size : str
+        How large the object is, and how that was found.
     files : mapping of str to str
         What the run made: what it is, by its place relative to the page.
     left_out : tuple of str
@@ -48,6 +50,7 @@ class Report:
     viewer: str = ""
     path: str = ""
     keyframes: tuple[KeyframePictures, ...] = ()
+    size: str = ""
     files: Mapping[str, str] = field(default_factory=dict)
     left_out: tuple[str, ...] = ()
     scores: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
@@ -63,6 +66,7 @@ def write_page(report: Report) -> str:
         _tell_failures(report.failures),
         _show(report.viewer),
         _tell_findings(report.findings),
+        _section("Size", f"<p>{html.escape(report.size)}</p>" if report.size else ""),
         _list_files(report.files),
         _show_keyframes(report.keyframes),
         _section("Where the camera went", report.path, _tell_left_out(report.left_out)),

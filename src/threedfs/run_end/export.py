@@ -1,4 +1,4 @@
-"""Write the mesh of an object upright and at its true height, for a printer or a viewer.
+"""Write the mesh of an object upright and in its true size, for a printer or a viewer.
 
     python -m threedfs.run_end.export results/my 95 my.stl [METHOD]
 
@@ -16,18 +16,22 @@ from scipy.spatial import cKDTree
 
 from threedfs.errors import UserError
 from threedfs.io.colored_meshes import read_colored_mesh, write_colored_mesh
+from threedfs.io.meshes import read_mesh
+from threedfs.io.scales import find_scale
 from threedfs.io.textured_meshes import read_textured_obj, write_textured_glb, write_textured_obj
 from threedfs.io.volumes import read_support
-from threedfs.object.stand import stand_up, turn_y_up
+from threedfs.object.stand import height_on, stand_up, turn_y_up
 from threedfs.texture.levels import Level, make_levels
-from threedfs.types import Mesh
+from threedfs.types import Mesh, Plane
 
 _FORMATS = (".stl", ".ply", ".obj", ".glb")
 _TEXTURED = {".obj": write_textured_obj, ".glb": write_textured_glb}
 
 
-def export(sequence: Path, height: str, file: Path, method: str = "surface") -> None:
+def export(sequence: Path, height: str | None, file: Path, method: str = "surface") -> float:
     """Write a sequence's mesh, with its texture or colours if it has any, standing on the plane z = 0.
+
+    Returns its height, in the unit of the file.
 
     GLB and OBJ have textures; in GLB, y is up and the plane y = 0, as its readers expect.
 
@@ -35,8 +39,9 @@ def export(sequence: Path, height: str, file: Path, method: str = "surface") -> 
     ----------
     sequence : Path
         Folder of its results.
-    height : str
-        A positive number, in the unit that the file is to have.
+    height : str or None
+        A positive number, in the unit that the file is to have; None takes the scale that the run found, and writes
+        millimetres, GLB in metres.
     file : Path
     method : str
         Whose mesh it is.
@@ -44,9 +49,9 @@ def export(sequence: Path, height: str, file: Path, method: str = "surface") -> 
     Raises
     ------
     UserError
-        If there is no such mesh, the height is no positive number, or the format is not known.
+        If there is no such mesh, the height is no positive number or not known, or the format is not known.
     """
-    path, place = _prepare(sequence, height, file, method)
+    path, size, place = _prepare(sequence, height, file, method)
     textured, kind = path.parent / "textured" / "mesh.obj", file.suffix.lower()
     if kind in _TEXTURED and textured.is_file():
         painted = read_textured_obj(textured)
@@ -54,10 +59,11 @@ def export(sequence: Path, height: str, file: Path, method: str = "surface") -> 
     else:
         mesh, colors = read_colored_mesh(path)
         write_colored_mesh(file, place(mesh), colors)
+    return size
 
 
 def export_levels(
-    sequence: Path, height: str, file: Path, faces: Sequence[int], method: str = "surface"
+    sequence: Path, height: str | None, file: Path, faces: Sequence[int], method: str = "surface"
 ) -> dict[Path, Level]:
     """Write a sequence's mesh with fewer faces, as `export` does it, with the colours of its vertices and no texture.
 
@@ -65,8 +71,8 @@ def export_levels(
     ----------
     sequence : Path
         Folder of its results.
-    height : str
-        A positive number, in the unit that the files are to have.
+    height : str or None
+        As `export` takes it.
     file : Path
         NAME.ENDING for one number of faces; of several, each has a file NAME_FACES.ENDING of its own.
     faces : sequence of int
@@ -84,7 +90,7 @@ def export_levels(
     UserError
         As `export`, or if the mesh is not closed.
     """
-    path, place = _prepare(sequence, height, file, method)
+    path, _, place = _prepare(sequence, height, file, method)
     full, colors = read_colored_mesh(path)
     placed = place(full)
     levels = make_levels(placed, faces)
@@ -101,13 +107,13 @@ def export_levels(
     return written
 
 
-def _prepare(sequence: Path, height: str, file: Path, method: str) -> tuple[Path, Callable[[Mesh], Mesh]]:
-    """Return the path of a mesh, and what puts it upright and to scale for a file."""
+def _prepare(sequence: Path, height: str | None, file: Path, method: str) -> tuple[Path, float, Callable[[Mesh], Mesh]]:
+    """Return the path of a mesh, its height in the unit of a file, and what puts it upright and to scale there."""
     try:
-        size = float(height)
+        size = None if height is None else float(height)
     except ValueError:
         size = 0.0
-    if not 0 < size < float("inf"):
+    if size is not None and not 0 < size < float("inf"):
         raise UserError(f"height: expected a positive number, the height of the object, got {height}.")
     if file.suffix.lower() not in _FORMATS:
         raise UserError(f"{file}: expected a file that ends in {', '.join(_FORMATS)}; rename it.")
@@ -119,11 +125,25 @@ def _prepare(sequence: Path, height: str, file: Path, method: str) -> tuple[Path
         )
     plane, kind = read_support(sequence / "03_scene" / "support.json").plane, file.suffix.lower()
 
+    if size is None:
+        size = _find_height(sequence, path, plane) * (1 if kind == ".glb" else 1000)
+
     def place(mesh: Mesh) -> Mesh:
         upright = stand_up(mesh, plane, size)
         return turn_y_up(upright) if kind == ".glb" else upright
 
-    return path, place
+    return path, size, place
+
+
+def _find_height(sequence: Path, path: Path, plane: Plane) -> float:
+    """Return the height of a mesh in metres, by the scale that its run found."""
+    scale = find_scale(sequence)
+    if scale is None:
+        raise UserError(
+            f"{sequence}: expected --height, the object's true height, or a run with --tag, --board or --height that "
+            "finds the size, found neither."
+        )
+    return scale.metres_per_unit * height_on(read_mesh(path), plane)
 
 
 if __name__ == "__main__":

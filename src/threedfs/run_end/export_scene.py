@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +20,7 @@ from threedfs.io.images import write_png
 from threedfs.io.meshes import read_mesh
 from threedfs.io.points import read_points
 from threedfs.io.poses import read_poses
+from threedfs.io.scales import find_scale
 from threedfs.object.silhouettes import draw_silhouette
 from threedfs.run_end.export_masks import mask_path_of, write_masks
 from threedfs.types import Camera, Mesh, SparsePoints, View
@@ -36,7 +38,8 @@ def export_scene(
 
     `images/NAME.png` are the frames without distortion; their masks are drawn from the mesh, and written as
     `write_masks` says. `sparse/0` is a COLMAP model in text with the sparse points, `transforms.json` the same cameras
-    for nerfstudio and its kin. All in scene units. Files that are in the way are replaced, others stay.
+    for nerfstudio and its kin. All in metres if the run found the size, else in scene units. Files that are in the way
+    are replaced, others stay.
 
     Parameters
     ----------
@@ -65,9 +68,19 @@ def export_scene(
     posed, mesh = read_poses(places["cameras"]), read_mesh(sequence / "11_object" / method / "mesh.ply")
     names = name_files([view.name for view in posed.views])
     _write_images(folder, names, posed.views, posed.distortion, read_frames(places["frames"]), mesh, masks)
-    _write_model(folder / "sparse/0", names, posed.views, read_points(sequence / "02_poses/points.zarr.zip"))
-    _write_json(folder / "transforms.json", _describe_transforms(names, posed.views, "nerfstudio" in masks))
+    scale, points = find_scale(sequence), read_points(sequence / "02_poses/points.zarr.zip")
+    unit = 1.0 if scale is None else scale.metres_per_unit
+    views = [_resize(view, unit) for view in posed.views]
+    _write_model(folder / "sparse/0", names, views, replace(points, xyz=points.xyz * unit))
+    _write_json(folder / "transforms.json", _describe_transforms(names, views, "nerfstudio" in masks))
     return len(posed.views)
+
+
+def _resize(view: View, unit: float) -> View:
+    """Return a view of the scene made larger by a factor."""
+    pose = view.cam_from_world.copy()
+    pose[:3, 3] *= unit
+    return replace(view, cam_from_world=pose)
 
 
 def name_files(names: Sequence[str]) -> dict[str, str]:

@@ -11,6 +11,7 @@ from threedfs.geometry.plane import axes_on
 from threedfs.io.meshes import read_mesh
 from threedfs.io.ome_zarr import write_ome_zarr
 from threedfs.io.poses import read_poses
+from threedfs.io.scales import find_scale
 from threedfs.io.volumes import read_support, read_volume
 
 _NOTES = {
@@ -24,7 +25,8 @@ def export_volume(sequence: Path, folder: Path, height: float | None = None, met
     """Write the fused signed distance field around the object as OME-Zarr 0.5; return the unit of its lengths.
 
     Axes are those of the grid, which stands on the support plane: z is up. Lengths are metres where the size of the
-    scene is known, by the height of the object or by given cameras; else scene units, and no unit is named.
+    scene is known, by the height of the object, the scale that the run found, or given cameras; else scene units, and
+    no unit is named.
 
     Parameters
     ----------
@@ -56,6 +58,9 @@ def export_volume(sequence: Path, folder: Path, height: float | None = None, met
 
 def _metres_per_unit(sequence: Path, height: float | None, method: str) -> float | None:
     if height is None:
+        scale = find_scale(sequence)
+        if scale is not None:
+            return scale.metres_per_unit
         poses = sequence / "02_poses/poses.json"
         return read_poses(poses).metres_per_unit if poses.is_file() else None
     mesh = read_mesh(sequence / "11_object" / method / "mesh.ply")

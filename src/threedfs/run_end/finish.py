@@ -37,7 +37,13 @@ _SCORING = {"evaluate", "evaluate_reconstruction", "photographs", "depth_trial",
 """Stages that compare and make nothing."""
 _SCORES = ("12_evaluate/**/*.csv", "12_depth_experiment/metrics.csv")
 """Tables of figures of a sequence."""
-_WATCHED = ("02_poses/poses.json", "11_object/*/mesh.ply", "12_evaluate/**/*.csv", "**/logs/**/*.log")
+_WATCHED = (
+    "02_poses/poses.json",
+    "11_object/*/mesh.ply",
+    "11_object/scale.json",
+    "12_evaluate/**/*.csv",
+    "**/logs/**/*.log",
+)
 """Files of a sequence that its report is older than, if it is out of date."""
 
 TABLES = {

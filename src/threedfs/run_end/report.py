@@ -22,8 +22,11 @@ from threedfs.io.depth_maps import read_depth_map
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
 from threedfs.io.poses import Poses, read_poses
+from threedfs.io.scales import find_scale, tell_scale
 from threedfs.io.textured_meshes import read_textured_obj
 from threedfs.io.volumes import read_silhouettes, read_support
+from threedfs.object.stand import height_on
+from threedfs.params.configuration import MESH_METHODS
 from threedfs.report.camera_path import draw_path, widest_gap
 from threedfs.report.findings import Facts, Finding, doubt_truth, judge, sum_up
 from threedfs.report.page import KeyframePictures, Report, write_page
@@ -46,12 +49,7 @@ _KINDS = 4
 _AGREED = 0.5
 """Share of the photographs at a vertex that must agree on it."""
 _PIXELS = ("gc_2d3d_pixel", "gc_2d")
-_MESHES = (
-    *("surface", "sdf_2d3d_voxel", "gc_select", "gc_2d3d_voxel", "volumetric_gc", "deformed_sdf", "fused_sdf"),
-    *("tsdf", "soft_maximum", "hard_maximum", "poisson"),
-)
-"""Methods whose mesh is shown, the first that was run."""
-_MASKS = (*_PIXELS, *_MESHES)
+_MASKS = (*_PIXELS, *MESH_METHODS)
 _FILES = {
     "the object with photographs on it, upright: open it in any viewer": "mesh.glb",
     "the object in full detail": "mesh.ply",
@@ -109,6 +107,7 @@ def write_report(folder: Path, context: Context) -> Path:
         else "",
         path=draw_path(known.poses.views, known.keyframes, known.place) if known.place else "",
         keyframes=tuple(_picture_keyframes(folder, known, context, with_masks=not failed)),
+        size="" if failed else _tell_size(folder, known),
         files={} if failed else _find_files(folder, context.methods),
         left_out=known.poses.unposed if known.poses else (),
         scores=_tabulate(context.metrics),
@@ -205,7 +204,8 @@ def find_method(folder: Path, methods: Collection[str] | None = None) -> str | N
     methods : collection of str, optional
         Those of the run; all, if not given.
     """
-    return next((name for name in _of(_MESHES, methods) if (folder / "11_object" / name / "mesh.ply").is_file()), None)
+    meshes = (name for name in _of(MESH_METHODS, methods) if (folder / "11_object" / name / "mesh.ply").is_file())
+    return next(meshes, None)
 
 
 def find_masks(folder: Path, methods: Collection[str] | None = None) -> Path | None:
@@ -286,6 +286,15 @@ def _picture_keyframes(folder: Path, known: _Known, context: Context, with_masks
             pictures["depth"] = color_depth(seen, keyframe)
             pictures["normals"] = color_normals(normals_from_depth(keyframe.view.camera, seen))
         yield KeyframePictures(name, {kind: embed_image(each, _LONGEST, 75, most) for kind, each in pictures.items()})
+
+
+def _tell_size(folder: Path, known: _Known) -> str:
+    scale = find_scale(folder)
+    if scale is None or known.place is None or known.method is None:
+        return ""
+    height = height_on(read_mesh(folder / "11_object" / known.method / "mesh.ply"), known.place.plane)
+    unit = 1000 * scale.metres_per_unit
+    return f"{unit * height:.1f} mm tall; a scene unit is {unit:.2f} mm. Found by a {tell_scale(scale)}."
 
 
 def _find_files(folder: Path, methods: Collection[str] | None) -> dict[str, str]:

@@ -15,6 +15,7 @@ from threedfs.io.images import read_mask
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.metrics import read_metrics
 from threedfs.io.poses import read_poses
+from threedfs.io.scales import Scale, find_scale
 from threedfs.io.volumes import Volume, read_support, read_volume
 from threedfs.types import Keyframe, Mesh, Support, View
 
@@ -66,6 +67,10 @@ class Results:
     def support(self) -> Support:
         """Return the plane that the object stands on, and the box around it."""
         return read_support(self._find("03_scene/support.json", "a support plane"))
+
+    def scale(self) -> Scale | None:
+        """Return how many metres a scene unit is and how that was found; None where the run was told no size."""
+        return find_scale(self.folder)
 
     def metrics(self) -> dict[tuple[str, str], float]:
         """Return the figures of the whole sequence by method and name; the method is empty for what all share."""
