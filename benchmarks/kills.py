@@ -63,19 +63,22 @@ def main() -> int:
             faults += [f"{hit}: {fault}" for fault in _find_faults(project)]
             if status == 0:
                 counts["runs that ended well"] += 1
-                if project.artifacts() != right:
-                    faults.append(f"{hit}: the results differ")
+                faults += [f"{hit}: {name} differs" for name in _compare(project.artifacts(), right)]
                 shutil.rmtree(project.folder / "results")
         if (project.folder / "results").is_dir():
             project.run(*arguments.target)
             counts["runs that ended well"] += 1
-            if project.artifacts() != right:
-                faults.append("the last results differ")
+            faults += [f"{name} differs" for name in _compare(project.artifacts(), right)]
     for name, count in sorted(counts.items()):
         print(f"{name:24}{count:>5}")
     print(f"{'seconds':24}{time.monotonic() - begun:>5.0f}")
     print(*faults, f"faults: {len(faults)}", sep="\n")
     return 1 if faults else 0
+
+
+def _compare(found: dict[str, bytes], right: dict[str, bytes]) -> list[str]:
+    """Return the names of files that are not the same, or are in one only."""
+    return sorted(name for name in {*found, *right} if found.get(name) != right.get(name))
 
 
 def _disturb(project, files: list[str], target: str, how: signal.Signals, delay: float) -> tuple[str, int]:

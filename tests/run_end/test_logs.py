@@ -1,12 +1,13 @@
 """Exact: what logs tell of jobs that failed and of those that did not."""
 
-import json
 import os
 
 import pytest
 
 from threedfs.evaluate.scores import Failure
-from threedfs.run_end.logs import find_failures, read_actions
+from threedfs.run_end.logs import find_failures, read_actions, read_keys
+from threedfs.store.digests import digest_value
+from threedfs.store.records import IDENTITY, record_path, write_record
 
 LOGS = {
     "mug/logs/poses.log": "poses of mug: at work\nthreedfs: poses of mug: poses: expected motion: got none.\n",
@@ -60,17 +61,24 @@ def test_logs_of_earlier_runs_are_left_alone(results):
 
 
 def test_actions_are_those_that_the_logs_end_with(results, tmp_path):
-    record = tmp_path / "store/actions/ab/abcd.json"
-    record.parent.mkdir(parents=True)
-    record.write_text(json.dumps({"stage": "frames"}))
-    assert read_actions(results / "can", tmp_path / "store") == [{"stage": "frames"}]
-    assert read_actions(results / "mug", tmp_path / "store") == []
+    identity = {name: {} for name in IDENTITY} | {"stage": "frames"}
+    made = {"outputs": {"frames": "f" * 64}, "bytes": {"frames": 1}, "seconds": 1.0, "peak_memory_mb": 1}
+    key, store = digest_value(identity), tmp_path / "store"
+    write_record(store, key, identity, made)
+    for log in (results / "can").rglob("*.log"):
+        log.write_text(log.read_text().replace("action abcd", f"action {key}"))
+    assert [record["stage"] for record in read_actions(results / "can", store)] == ["frames"]
+    assert read_keys(results / "can") == {key}
+    assert read_actions(results / "mug", store) == []
+    record_path(store, key).write_text("{")
+    assert read_actions(results / "can", store) == []  # a damaged record tells no costs
 
 
 def test_log_of_a_job_on_many_keyframes_names_each_fault_and_each_action(tmp_path):
     log = tmp_path / "mug/logs/cues.log"
     log.parent.mkdir(parents=True)
-    actions = "action abcd\naction abce\n"
+    keys = [digest_value({name: {} for name in IDENTITY} | {"stage": stage}) for stage in ("edges", "cues")]
+    actions = "".join(f"action {key}\n" for key in keys)
     log.write_text(
         actions + "threedfs: edges of mug IMG 1 and 2 more: no: edge.\nthreedfs: cues of mug IMG 4: killed.\n"
     )
@@ -78,10 +86,10 @@ def test_log_of_a_job_on_many_keyframes_names_each_fault_and_each_action(tmp_pat
         Failure("mug", "edges", "IMG 1 and 2 more", "no: edge."),
         Failure("mug", "cues", "IMG 4", "killed."),
     ]
-    for key in ("abcd", "abce"):
-        record = tmp_path / f"store/actions/ab/{key}.json"
-        record.parent.mkdir(parents=True, exist_ok=True)
-        record.write_text(json.dumps({"stage": key}))
-    assert read_actions(tmp_path / "mug", tmp_path / "store") == [{"stage": "abcd"}, {"stage": "abce"}]
+    made = {"outputs": {"edges": "f" * 64}, "bytes": {"edges": 1}, "seconds": 1.0, "peak_memory_mb": 1}
+    for key, stage in zip(keys, ("edges", "cues"), strict=True):
+        write_record(tmp_path / "store", key, {name: {} for name in IDENTITY} | {"stage": stage}, made)
+    stages = {record["stage"] for record in read_actions(tmp_path / "mug", tmp_path / "store")}
+    assert stages == {"edges", "cues"}
     log.write_text(actions)
     assert find_failures(tmp_path, 0) == []
