@@ -60,7 +60,8 @@ def plan(folder: Path, configuration: Path, options: list[str]) -> tuple[float, 
         "rules",
     ]
     # outputs without a record of how they were made count as up to date by their times alone
-    command += ["--rerun-triggers", "mtime", "--cores", "2", "--configfile", str(configuration), *options]
+    command += ["--rerun-triggers", "mtime", "--cores", "2", *options]
+    command += ["--configfile", str(configuration)]
     environment = {**os.environ, "PYTHONPATH": f"{ROOT / 'src'}:{os.environ.get('PYTHONPATH', '')}"}
     before, started = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
     done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib.util
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -13,6 +14,16 @@ import pytest
 from threedfs.store.leftovers import wait_for_leftovers
 
 HERE = Path(__file__).parent
+RULES = HERE.parents[1] / "workflow/rules"
+
+
+def test_every_rule_names_its_memory_and_its_time():
+    for file in RULES.glob("*.smk"):
+        for rule in re.split(r"^(?:rule|checkpoint) ", file.read_text(), flags=re.MULTILINE)[1:]:
+            name = rule.partition(":")[0]
+            assert "mem_mb=" in rule and "runtime=minutes(" in rule, name
+            # numbers alone would not grow when a job is tried again
+            assert not re.search(r"mem_mb=\d", rule), name
 
 
 @pytest.fixture

@@ -2,7 +2,7 @@
 
 import pytest
 
-from threedfs.memory import estimate_memory
+from threedfs.memory import estimate_memory, estimate_memory_of_keyframes, grow_memory
 
 TABLETOP, BLOWTORCH = {"pixels": 640 * 480, "keyframes": 20}, {"pixels": 640 * 480, "keyframes": 67}
 
@@ -32,3 +32,17 @@ def test_estimate_grows_with_the_grid_and_with_the_keyframes_that_are_held():
     assert large - 400 == 8 * (small - 400)
     assert estimate_memory("fuse_object", 200, **BLOWTORCH) == estimate_memory("fuse_object", 200)
     assert estimate_memory("segment", 200, **BLOWTORCH) > estimate_memory("segment", 200, **TABLETOP)
+
+
+@pytest.mark.parametrize(("rule", "peak"), [("depth", 686), ("cues", 332), ("stereo", 260)])
+def test_estimate_holds_the_peak_of_a_keyframe_and_grows_with_those_at_work(rule, peak):
+    """Regression: the highest peaks at 640 x 480 pixels, MB."""
+    one, two, three = (estimate_memory_of_keyframes(rule, 640 * 480, at_once) for at_once in (1, 2, 3))
+    assert peak < one < 4 * peak
+    assert abs(three - two - (two - one)) <= 1
+
+
+def test_every_attempt_asks_for_twice_the_memory():
+    """Exact."""
+    first, second, third = (grow_memory(1000, attempt) for attempt in (1, 2, 3))
+    assert first > 1000 and (second, third) == (2 * first, 4 * first)
