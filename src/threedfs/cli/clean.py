@@ -145,7 +145,7 @@ def _tell(out: Path, freed: float, folders: list[Path], done: bool) -> None:
         print(f"{freed / _MEGABYTE:9.1f} MB  can be removed; nothing was yet: add --yes.")
     for store in dict.fromkeys(_store_of(out, folder) for folder in folders):
         held = sum(path.lstat().st_size for path in store.rglob("*") if path.is_file())
-        print(f"{held / _MEGABYTE:9.1f} MB  stay in {store}, from which runs take what they need again.")
+        print(f"{held / _MEGABYTE:9.1f} MB  stay in {store}, from which runs take it again (threedfs store gc).")
 
 
 def _store_of(out: Path, folder: Path) -> Path:
