@@ -29,7 +29,7 @@ from threedfs.io.contour_forest import read_forest
 from threedfs.io.metrics import write_metrics
 from threedfs.params.edges import EdgesParams
 
-SMOOTHINGS = (1.5, 2.0, 2.5)
+SMOOTHINGS = (1.5, 2.0, 2.5, 3.0, 3.5)
 LEVELS = np.geomspace(25, 250, 10)
 Truths = list[tuple[np.ndarray, list[np.ndarray]]]
 

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import maximum_bipartite_matching
+from numba import njit
 
 TOLERANCE = 0.0075
 """Largest distance of matched pixels, in diagonals of the image (Martin, Fowlkes and Malik 2004)."""
@@ -61,7 +60,7 @@ def match_contours(first: np.ndarray, second: np.ndarray, distance: float) -> tu
     number[second] = np.arange(second.sum())
     if not len(pixels) or not second.any():
         return matched
-    # Near pairs come first: the search for a largest matching then starts from a good one.
+    # Near pairs come first, so that most pixels find their partner at once.
     reach = int(distance)
     offsets = np.stack(np.meshgrid(*(np.arange(-reach, reach + 1),) * 2, indexing="ij"), axis=-1).reshape(-1, 2)
     offsets = offsets[(offsets**2).sum(1) <= distance**2]
@@ -70,12 +69,51 @@ def match_contours(first: np.ndarray, second: np.ndarray, distance: float) -> tu
     near = padded[pixels[:, :1] + offsets[:, 0] + reach, pixels[:, 1:] + offsets[:, 1] + reach]
     has = near >= 0
     starts = np.concatenate([[0], np.cumsum(has.sum(1))])
-    graph = csr_matrix((np.ones(has.sum(), np.int8), near[has], starts), shape=(len(pixels), int(second.sum())))
-    partner = maximum_bipartite_matching(graph, perm_type="column")
+    partner = _match(starts, near[has], int(second.sum()))
     hit = partner >= 0
     matched[0][tuple(pixels[hit].T)] = True
     matched[1][tuple(np.argwhere(second)[partner[hit]].T)] = True
     return matched
+
+
+@njit(cache=True)
+def _match(starts, neighbours, count):
+    """Return the partner (N,) of each vertex in a largest bipartite matching, -1 without one.
+
+    Paths are sought from one vertex after another. What a search without success has reached can lie on no later
+    path, so it stays marked.
+    """
+    size = len(starts) - 1
+    partner, holder = np.full(size, -1), np.full(count, -1)
+    reached, came_from = np.zeros(count, np.bool_), np.empty(count, np.int64)
+    waiting, marked = np.empty(size + 1, np.int64), np.empty(count, np.int64)
+    for start in range(size):
+        waiting[0] = start
+        head, tail, marks, end = 0, 1, 0, -1
+        while head < tail and end < 0:
+            here = waiting[head]
+            head += 1
+            for k in range(starts[here], starts[here + 1]):
+                other = neighbours[k]
+                if reached[other]:
+                    continue
+                reached[other], came_from[other] = True, here
+                marked[marks] = other
+                marks += 1
+                if holder[other] < 0:
+                    end = other
+                    break
+                waiting[tail] = holder[other]
+                tail += 1
+        if end < 0:
+            continue
+        for k in range(marks):
+            reached[marked[k]] = False
+        while end >= 0:
+            here = came_from[end]
+            holder[end] = here
+            end, partner[here] = partner[here], end
+    return partner
 
 
 def count_matches(strength: np.ndarray, truths: Sequence[np.ndarray], thresholds: Sequence[float]) -> ContourCounts:
