@@ -85,7 +85,9 @@ def _disturb(project, files: list[str], target: str, how: signal.Signals, delay:
     """Start a run and send a signal; return whom it was sent to (empty: it had ended before), and the exit status."""
     environment = {**project.environment, MARK: str(os.getpid()), "STUB_PAUSE": "0.02"}
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    running = subprocess.Popen(project.command, cwd=project.folder, env=environment, start_new_session=True, **quiet)
+    running = subprocess.Popen(
+        [*project.command, *files], cwd=project.folder, env=environment, start_new_session=True, **quiet
+    )
     until, hit = time.monotonic() + delay, ""
     while time.monotonic() < until and running.poll() is None:
         time.sleep(0.01)

@@ -224,7 +224,9 @@ def compare(local: Project, cluster: Project, target: str | None) -> None:
         ours = {name: content for name, content in ours.items() if name in theirs}
     differing = sorted(name for name in {*ours, *theirs} if ours.get(name) != theirs.get(name))
     if differing or not ours:
-        raise Failure(f"expected the same bytes from the cluster, found others in {', '.join(differing[:10])}")
+        raise Failure(
+            f"expected the same bytes from the cluster, found {len(differing)} others: {', '.join(differing)}"
+        )
     print(f"{len(ours)} files, {sum(map(len, ours.values())) / 1e6:.1f} MB: the same bytes as by a local run")
 
 
