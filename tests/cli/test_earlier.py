@@ -1,6 +1,5 @@
 """Exact: what jobs cost in earlier runs, on made-up records of a store."""
 
-import json
 import os
 
 import pytest
@@ -8,6 +7,7 @@ import pytest
 from threedfs.cli.costs import MEASURED
 from threedfs.cli.earlier import find_costs
 from threedfs.store.digests import digest_value
+from threedfs.store.records import IDENTITY, MADE, record_path, write_record
 
 CONFIG = {"store": "results/.store", "depth": {"iterations": 5}}
 START = 1.5
@@ -25,7 +25,7 @@ def compiled(out, code, when=WHEN - 5000.0):
     """Make a kernel of some code."""
     folder = out / "results/.store/kernels" / digest_value([{"code": code, "versions": {}}])[:16]
     (folder / "topic").mkdir(parents=True)
-    kernel = folder / "topic/kernel.nbc"
+    kernel = folder / "topic/index.kernel"
     kernel.touch()
     os.utime(kernel, (when, when))
 
@@ -35,12 +35,15 @@ def record(out, sequence, log, *records):
     (out / "results" / sequence / "02_poses").mkdir(parents=True, exist_ok=True)
     keys = []
     for own in records:
-        full = {"stage": log.rpartition("/")[2], "parameters": {}, "wildcards": {}, "code": "", "versions": {}, **own}
-        keys.append(digest_value([sequence, log, full]))
-        path = out / f"results/.store/actions/{keys[-1][:2]}/{keys[-1]}.json"
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps(full))
-        os.utime(path, (WHEN, WHEN))
+        identity = {"stage": log.rpartition("/")[2], "parameters": {}, "seed": 0, "wildcards": {}, "inputs": {}}
+        identity |= {"code": "", "versions": {}} | {name: own[name] for name in own if name in IDENTITY}
+        identity["inputs"] = {"log": [digest_value([sequence, log])]}
+        made = {"outputs": {}, "bytes": {}, "seconds": 0.0, "peak_memory_mb": 0.0}
+        made |= {name: own[name] for name in own if name in MADE}
+        keys.append(digest_value(identity))
+        store = out / "results/.store"
+        write_record(store, keys[-1], identity, made)
+        os.utime(record_path(store, keys[-1]), (WHEN, WHEN))
     log = out / "results" / sequence / f"{log}.log"
     log.parent.mkdir(parents=True, exist_ok=True)
     log.write_text("said something\n" + "".join(f"action {key}\n" for key in keys))

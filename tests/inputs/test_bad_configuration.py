@@ -211,7 +211,7 @@ def test_a_read_only_place_and_a_full_disk_are_told_apart(tmp_path, monkeypatch)
         (["run", ".", "--set", "depth.iterations=2024-99-99"], "--set: expected a value after depth.iterations="),
         (["run", ".", "--set", "video=a.mp4"], "videos are given without --set"),
         (["show", "nowhere"], "expected the report of a run, found none"),
-        (["export", ".", "a.stl"], "expected --height"),
+        (["export", ".", "a.stl"], "expected the mesh of a run, found none"),
     ],
 )
 def test_the_command_refuses_in_one_sentence(words, sentence, capsys):

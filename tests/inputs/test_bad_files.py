@@ -182,8 +182,8 @@ SEQUENCES = {
     ("source", "mesh"): (lambda folder, sound: sound / "mesh.ply", "expected a video (mp4 or mov)"),
     ("source", "empty folder"): (lambda folder, sound: folder, "in which none of 0 such files can be read"),
     ("source", "other files"): (
-        lambda folder, sound: file("IMG_1.HEIC", "x")(folder, sound).parent,
-        "it has files that end in heic; convert them to jpg",
+        lambda folder, sound: file("IMG_1.DNG", "x")(folder, sound).parent,
+        "it has files that end in dng; convert them to jpg",
     ),
     ("source", "few photos"): (
         images({f"{number}.png": NOISE for number in range(3)}),
@@ -198,7 +198,7 @@ SEQUENCES = {
     ("source", "long name"): (images(PHOTO | {f"{'a' * 200}.png": NOISE}), "rename it to at most 150 letters"),
     ("source", "one name twice"): (images(PHOTO | {"1.bmp": NOISE}), "got several named '1'"),
     ("calibration", "text"): (file("v.mp4", "hello " * 99), "expected a video"),
-    ("cameras", "few"): (few_cameras(3), "expected given cameras for at least 8 of the 12 frames, got 3"),
+    ("cameras", "few"): (few_cameras(3), "expected given cameras for at least 6 of the 12 frames, got 3"),
     ("cameras", "of other frames"): (
         changed(frames=[{**frame, "video_frame": 900 + i} for i, frame in enumerate(cameras()["frames"])]),
         "expected given cameras for at least two frames, got 0 of 12",

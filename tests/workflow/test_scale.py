@@ -27,6 +27,6 @@ def test_a_tag_is_looked_for_in_the_frames_and_a_height_taken_of_the_mesh(projec
 def test_a_scale_that_is_not_asked_for_any_more_is_removed(finished):
     stale = finished.folder / "results/sample/11_object/scale.json"
     stale.write_text(json.dumps({"schema": "threedfs/scale/1"}))
-    (finished.folder / "results/metrics.csv").unlink()
+    (finished.folder / "results/tables/metrics.csv").unlink()
     finished.run()
     assert not stale.exists()

@@ -19,7 +19,8 @@ rule scale:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=1000,
+        mem_mb=megabytes(1000),
+        runtime=minutes(20),
     params:
         code=code_of("scale"),
         settings=settings_of("scale"),

@@ -14,6 +14,7 @@ from threedfs.io.keyframes import read_keyframes
 from threedfs.io.poses import read_poses
 from threedfs.run_end.logs import Action, read_jobs
 from threedfs.store.digests import digest_value
+from threedfs.store.kernels import ENDING
 
 _START = 1.5
 """Seconds in which a job starts, which its record in the store does not count."""
@@ -105,6 +106,6 @@ def _cost_of(job: list[Action], known: Cost, cores: int, store: Path) -> float:
 def _compiled(action: Action, store: Path) -> bool:
     """Say whether the job of an action had to compile its kernels: they are as young as its record."""
     maker = {name: action.record[name] for name in ("code", "versions")}
-    kernels = (store / "kernels" / digest_value([maker])[:16]).rglob("*.nbc")
+    kernels = (store / "kernels" / digest_value([maker])[:16]).rglob(f"*{ENDING}")
     begun = action.recorded - action.record["seconds"]
     return any(begun <= kernel.stat().st_mtime <= action.recorded for kernel in kernels)

@@ -86,11 +86,12 @@ def check_enough_given(posed: int, frames: int) -> None:
     Raises
     ------
     UserError
-        If they are fewer than eight, and not all.
+        If they are fewer than eight, and than half.
     """
-    if posed < min(_FEWEST_POSED, frames):
+    fewest = min(_FEWEST_POSED, (frames + 1) // 2)
+    if posed < fewest:
         raise UserError(
-            f"poses: expected given cameras for at least {min(_FEWEST_POSED, frames)} of the {frames} frames, got "
+            f"poses: expected given cameras for at least {fewest} of the {frames} frames, got "
             f"{posed}; give cameras of more frames, or none: then they are estimated."
         )
 
