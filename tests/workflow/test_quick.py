@@ -30,6 +30,7 @@ ROOT = Path(__file__).resolve().parents[2]
 SAMPLE = ROOT / "resources" / "sample"
 SEQUENCES = """\
 dataset: quick
+keyframes_at_truth: true
 methods: [fused_sdf, gc_2d, gc_2d3d_pixel, sdf_2d3d_voxel, surface, volumetric_gc]
 sequences:
   gnome:
@@ -79,7 +80,7 @@ def _write_static_video(path: Path) -> None:
 
 def test_the_sound_sequence_is_measured(run):
     results, _, output = run
-    rows = read_metrics(results / "tables/metrics.csv")
+    rows = read_metrics(results / "metrics.csv")
     found = {row.name: row.value for row in rows if not row.keyframe and row.method in ("", "fused_sdf")}
     assert found["iou_mean"] > 0.6, output
     assert found["mesh_closed"] == 1 and found["mesh_chamfer"] < 5
@@ -91,9 +92,7 @@ def test_the_sound_sequence_is_measured(run):
 
 def test_the_segmentation_is_measured_with_and_without_a_mesh(run):
     results, _, output = run
-    found = {
-        (row.method, row.name): row.value for row in read_metrics(results / "tables/metrics.csv") if not row.keyframe
-    }
+    found = {(row.method, row.name): row.value for row in read_metrics(results / "metrics.csv") if not row.keyframe}
     overlap = {method: value for (method, name), value in found.items() if name == "iou_mean"}
     assert {"gc_2d", "gc_2d3d_pixel", "sdf_2d3d_voxel", "surface", "volumetric_gc"} < set(overlap), output
     assert min(overlap["gc_2d3d_pixel"], overlap["sdf_2d3d_voxel"]) > 0.6
