@@ -60,3 +60,13 @@ def test_refuses_a_page_without_marks_and_a_run_without_tables(results, tmp_path
     assert not (docs / "results.csv").exists()
     with pytest.raises(UserError, match="expected the figures of a run"):
         publish(tmp_path / "nothing", docs)
+
+
+def test_rows_of_other_data_sets_are_kept_and_those_of_this_one_replaced(results, tmp_path):
+    docs = tmp_path / "docs"
+    other = Metric("ods", 0.66, "1", "pictures", "all", "structured")
+    write_metrics(docs / "results.csv", [Metric("iou_mean", 0.1, "1", "toys", "cup", "fused_sdf"), other])
+    publish(results, docs)
+    rows = read_metrics(docs / "results.csv")
+    assert [(row.name, row.sequence) for row in rows] == [("iou_mean", "mug"), ("seconds", "mug"), ("ods", "all")]
+    assert rows[-1] == other

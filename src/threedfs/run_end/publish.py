@@ -29,7 +29,8 @@ _NEW = f"# Results\n\n{BEGIN}\n{END}\n"
 def publish(results: Path, docs: Path) -> None:
     """Write `results.csv`, `results.md` and `plots/*.svg` from the tables and plots of a folder of results.
 
-    Of `results.md` only the part between the two marks is written; what stands around it is kept.
+    Of `results.md` only the part between the two marks is written; what stands around it is kept, and so are the rows
+    of `results.csv` of data sets that the run has none of.
 
     Parameters
     ----------
@@ -46,7 +47,9 @@ def publish(results: Path, docs: Path) -> None:
     page = docs / "results.md"
     before, after = _read_own_words(page)
     metrics = read_metrics(figures) + read_metrics(results / "benchmarks" / "costs.csv")
-    write_metrics(docs / "results.csv", metrics)
+    measured = {metric.dataset for metric in metrics}
+    earlier = read_metrics(docs / "results.csv") if (docs / "results.csv").is_file() else []
+    write_metrics(docs / "results.csv", [*metrics, *(metric for metric in earlier if metric.dataset not in measured)])
     plots = sorted((results / "plots").glob("*.svg"))
     for old in (docs / "plots").glob("*.svg"):
         old.unlink()
