@@ -54,7 +54,7 @@ def weigh_patch(reference, u, v, offsets, falloff, variance_floor, least_varianc
     return 1 / np.sqrt(variance + variance_floor) if variance >= least_variance else 0.0
 
 
-@njit(cache=True, error_model="numpy", fastmath={"reassoc", "nsz"})
+@njit(cache=True, error_model="numpy")
 def view_cost(image, infinity, epipole, u, v, plane, offsets, patch, inverse_deviation, variance_floor):
     """Compare a weighed patch with one neighbour: (1 - NCC) / 2 in [0, 1], or -1 where it is not seen there.
 
