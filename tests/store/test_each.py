@@ -240,10 +240,12 @@ def test_a_killed_worker_is_told_in_a_sentence(folder, edit, threads):
 
 def test_interrupt_ends_the_workers(folder, edit, spawn):
     edit("trace", "(Path(photos).parent / f'at-{keyframe}').write_text(str(os.getpid())); time.sleep(60)")
+    at = [folder / f"at-{name}" for name in NAMES[:2]]
     process = run_apart(folder, spawn, 2)
-    wait_for(lambda: all((folder / f"at-{name}").is_file() for name in NAMES[:2]), process)
+    # there is a file before its number is written
+    wait_for(lambda: all(path.is_file() and path.stat().st_size for path in at), process)
     process.send_signal(signal.SIGINT)
     process.communicate(timeout=20)
     assert process.returncode != 0
-    for name in NAMES[:2]:
-        assert not Path(f"/proc/{(folder / f'at-{name}').read_text()}").is_dir()
+    for path in at:
+        assert not Path(f"/proc/{path.read_text()}").is_dir()

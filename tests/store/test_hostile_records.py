@@ -13,7 +13,8 @@ from threedfs.progress import Progress
 from threedfs.store.action import Task, identify
 from threedfs.store.digests import InputDigests, digest_value
 from threedfs.store.objects import DamagedObject, Objects
-from threedfs.store.perform import Store, fetch
+from threedfs.store.perform import fetch
+from threedfs.store.place import Store
 from threedfs.store.records import BadRecord, parse_record, record_path, write_record
 
 NAMES = ["a.png", "../out", "..", ".", "", "/etc/x", "deep/../../out", "a//b", "a/", "./a", "\0", "\ud800", "n" * 300]

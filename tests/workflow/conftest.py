@@ -113,17 +113,25 @@ class Project:
 
     def run(self, *arguments: str, good: bool = True) -> str:
         """Run snakemake and return all that it printed; fail unless it ended as expected."""
+        status, output = self._finish([*self.command, *arguments], self.folder)
+        assert (status == 0) is good, output
+        return output
+
+    def call(self, folder: Path, *words: str) -> tuple[int, str]:
+        """Call the copy's command `threedfs` in a folder; return status and output."""
+        return self._finish([sys.executable, "-m", "threedfs.cli.main", *words], folder)
+
+    def _finish(self, words: list[str], folder: Path) -> tuple[int, str]:
         done = subprocess.run(
-            [*self.command, *arguments],
-            cwd=self.folder,
+            words,
+            cwd=folder,
             env=self.environment,
             stdout=subprocess.PIPE,
             stderr=subprocess.STDOUT,
             text=True,
             check=False,
         )
-        assert (done.returncode == 0) is good, done.stdout
-        return done.stdout
+        return done.returncode, done.stdout
 
     def edit(self, path: str, old: str, new: str) -> None:
         """Replace text in a file of the copy."""

@@ -5,8 +5,6 @@ from __future__ import annotations
 import fcntl
 import json
 import shutil
-import subprocess
-import sys
 
 import pytest
 
@@ -20,7 +18,7 @@ def finished_command(first_run, tmp_path_factory):
     """A copy of the project, a folder in which its command has reconstructed a mug, and what that holds."""
     folder, kept = tmp_path_factory.mktemp("mine"), tmp_path_factory.mktemp("kept") / "mine"
     (folder / "mug.mp4").write_text("film")
-    status, output = call(first_run[0], folder, "run", "mug.mp4", "--cores", "2")
+    status, output = first_run[0].call(folder, "run", "mug.mp4", "--cores", "2")
     assert status == 0, output
     shutil.copytree(folder, kept, symlinks=True)
     return first_run[0], folder, kept
@@ -36,23 +34,10 @@ def mine(finished_command, monkeypatch, capsys):
 
     def run(*words):
         if words[0] == "run":
-            return call(project, folder, *words)
+            return project.call(folder, *words)
         return main(words), capsys.readouterr().out
 
     return folder, run
-
-
-def call(project, folder, *words):
-    done = subprocess.run(
-        [sys.executable, "-m", "threedfs.cli.main", *words],
-        cwd=folder,
-        env=project.environment,
-        stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT,
-        text=True,
-        check=False,
-    )
-    return done.returncode, done.stdout
 
 
 def files_of(folder):

@@ -20,19 +20,7 @@ STATIC = "static: the camera hardly moves."
 def call(project, tmp_path):
     """Call the copy's command in an empty folder; return status and output."""
 
-    def run(*words):
-        done = subprocess.run(
-            [sys.executable, "-m", "threedfs.cli.main", *words],
-            cwd=tmp_path,
-            env=project.environment,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            check=False,
-        )
-        return done.returncode, done.stdout
-
-    return run
+    return lambda *words: project.call(tmp_path, *words)
 
 
 def test_a_video_of_any_name_is_reconstructed_in_another_folder(call, tmp_path):

@@ -25,7 +25,8 @@ from threedfs.errors import UserError
 from threedfs.io.scales import find_scale, tell_scale
 from threedfs.report.findings import sum_up
 from threedfs.run_end.export import export
-from threedfs.run_end.report import find_masks, find_method, find_out
+from threedfs.run_end.known import find_masks, find_method
+from threedfs.run_end.report import find_out
 from threedfs.run_end.results import Results, open_results
 from threedfs.run_end.summary import read_summary
 

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import numpy as np
 
-from threedfs.errors import UserError
 from threedfs.evaluate.costs import cost_figures
 from threedfs.evaluate.doubts import find_doubts
 from threedfs.evaluate.figures import soundness_figures
@@ -19,24 +18,22 @@ from threedfs.io.atomic import atomic
 from threedfs.io.colored_meshes import read_colored_mesh, read_vertex_property
 from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_depth_map
-from threedfs.io.keyframes import read_keyframes
 from threedfs.io.meshes import read_mesh
-from threedfs.io.poses import Poses, read_poses
 from threedfs.io.scales import find_scale, tell_scale
 from threedfs.io.textured_meshes import read_textured_obj
-from threedfs.io.volumes import read_silhouettes, read_support
+from threedfs.io.volumes import read_silhouettes
 from threedfs.object.stand import height_on
-from threedfs.params.configuration import MESH_METHODS
 from threedfs.report.camera_path import draw_path, widest_gap
 from threedfs.report.findings import Facts, Finding, doubt_truth, judge, sum_up
 from threedfs.report.page import KeyframePictures, Report, write_page
 from threedfs.report.pictures import color_depth, color_normals, embed_image, outline_mask
 from threedfs.report.viewer import embed_viewer
+from threedfs.run_end.known import MASK_METHODS, Known, choose, find_masks, find_method, gather
 from threedfs.run_end.logs import read_actions
 from threedfs.run_end.summary import Summary, write_summary
 from threedfs.texture.photograph import photograph_texture, photograph_vertices
 from threedfs.texture.textured import TexturedMesh
-from threedfs.types import Keyframe, Mesh, Support
+from threedfs.types import Mesh
 
 _LONGEST, _STILL = 420, 900
 """Pixels along the longer side of a keyframe's pictures, and of the mesh's."""
@@ -48,8 +45,6 @@ _KINDS = 4
 """Pictures of a keyframe."""
 _AGREED = 0.5
 """Share of the photographs at a vertex that must agree on it."""
-_PIXELS = ("gc_2d3d_pixel", "gc_2d")
-_MASKS = (*_PIXELS, *MESH_METHODS)
 _FILES = {
     "the object with photographs on it, upright: open it in any viewer": "mesh.glb",
     "the object in full detail": "mesh.ply",
@@ -94,7 +89,7 @@ def write_report(folder: Path, context: Context) -> Path:
 
     After a failure mesh and masks are left out too, unless only scoring failed: they may be of an earlier run.
     """
-    known = _gather(folder, context.methods, context.stale)
+    known = gather(folder, context.methods, context.stale)
     failed = bool(context.failures) and not context.scored_only
     findings = () if failed else tuple(_judge(folder, known))
     shown = None if failed else _find_mesh(folder, known)
@@ -170,10 +165,10 @@ def _doubt(metrics: Sequence[Metric]) -> list[Finding]:
 
 def find_out(folder: Path, methods: Collection[str] | None = None) -> list[Finding]:
     """Return what is to be known of a sequence's results before trusting them; nothing without a mesh."""
-    return _judge(folder, _gather(folder, methods))
+    return _judge(folder, gather(folder, methods))
 
 
-def _judge(folder: Path, known: _Known) -> list[Finding]:
+def _judge(folder: Path, known: Known) -> list[Finding]:
     if known.place is None or known.method is None:
         return []
     path = folder / "11_object" / known.method / "mesh.ply"
@@ -194,57 +189,6 @@ def _judge(folder: Path, known: _Known) -> list[Finding]:
     )
 
 
-def find_method(folder: Path, methods: Collection[str] | None = None) -> str | None:
-    """Return the method whose mesh of a sequence is the one to look at, None without any mesh.
-
-    Parameters
-    ----------
-    folder : Path
-        Of its results.
-    methods : collection of str, optional
-        Those of the run; all, if not given.
-    """
-    meshes = (name for name in _of(MESH_METHODS, methods) if (folder / "11_object" / name / "mesh.ply").is_file())
-    return next(meshes, None)
-
-
-def find_masks(folder: Path, methods: Collection[str] | None = None) -> Path | None:
-    """Return the folder of a sequence's masks to look at, None without any; parameters as `find_method`."""
-    folders = (folder / "11_object" / name / "masks" for name in _of(_MASKS, methods))
-    return next((path for path in folders if path.is_dir()), None)
-
-
-def _of(names: Sequence[str], methods: Collection[str] | None) -> list[str]:
-    return [name for name in names if methods is None or name in methods]
-
-
-@dataclass(frozen=True)
-class _Known:
-    """What lies in a folder of results, None where the run did not come so far."""
-
-    poses: Poses | None = None
-    place: Support | None = None
-    keyframes: Mapping[str, Keyframe] = field(default_factory=dict)
-    method: str | None = None
-
-
-def _gather(folder: Path, methods: Collection[str] | None = None, stale: Collection[str] = ()) -> _Known:
-    places = {
-        "poses": (folder / "02_poses/poses.json", read_poses),
-        "place": (folder / "03_scene/support.json", read_support),
-        "keyframes": (folder / "04_crops/keyframes.json", read_keyframes),
-    }
-    found = {}
-    for name, (path, read) in places.items():
-        try:
-            found |= {name: read(path)} if path.is_file() and str(path) not in stale else {}
-        except UserError:  # damaged: the run says so when it needs it
-            continue
-    if "poses" not in found:
-        return _Known()
-    return _Known(**found, method=find_method(folder, methods))
-
-
 @dataclass(frozen=True)
 class _Shown:
     """The mesh on the page, and its picture (H, W, 3) uint8 from the first keyframe."""
@@ -253,7 +197,7 @@ class _Shown:
     still: np.ndarray
 
 
-def _find_mesh(folder: Path, known: _Known) -> _Shown | None:
+def _find_mesh(folder: Path, known: Known) -> _Shown | None:
     if known.place is None or known.method is None or not known.keyframes:
         return None
     own = folder / "11_object" / known.method
@@ -268,13 +212,13 @@ def _find_mesh(folder: Path, known: _Known) -> _Shown | None:
     return _Shown(surface, np.where(seen[..., None], image.clip(0, 255), 244).astype(np.uint8))
 
 
-def _picture_keyframes(folder: Path, known: _Known, context: Context, with_masks: bool) -> Iterator[KeyframePictures]:
+def _picture_keyframes(folder: Path, known: Known, context: Context, with_masks: bool) -> Iterator[KeyframePictures]:
     crops = folder / "04_crops/crops.zarr.zip"
     if not crops.is_file() or str(crops) in context.stale:
         return
     store, most = read_crops(crops), _PICTURES / (_KINDS * max(1, len(known.keyframes)))
     with_depth = str(folder / "06_depth") not in context.stale
-    drawn = (folder / "11_object" / name / "silhouettes.zarr.zip" for name in _of(_MASKS, context.methods))
+    drawn = (folder / "11_object" / name / "silhouettes.zarr.zip" for name in choose(MASK_METHODS, context.methods))
     masks = next((read_silhouettes(path) for path in drawn if with_masks and path.is_file()), {})
     for name, keyframe in known.keyframes.items():
         image, depth = store.image(name), folder / f"06_depth/{name}.zarr.zip"
@@ -288,7 +232,7 @@ def _picture_keyframes(folder: Path, known: _Known, context: Context, with_masks
         yield KeyframePictures(name, {kind: embed_image(each, _LONGEST, 75, most) for kind, each in pictures.items()})
 
 
-def _tell_size(folder: Path, known: _Known) -> str:
+def _tell_size(folder: Path, known: Known) -> str:
     scale = find_scale(folder)
     if scale is None or known.place is None or known.method is None:
         return ""

@@ -17,7 +17,8 @@ from threedfs.progress import Progress
 from threedfs.store.action import Inputs, Task
 from threedfs.store.arguments import fit_inputs, read_arguments, read_order
 from threedfs.store.each import Chain, Fault, Passage, perform_each
-from threedfs.store.perform import Store, explained, perform
+from threedfs.store.perform import perform
+from threedfs.store.place import Store, explained
 
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EFBIG)
 

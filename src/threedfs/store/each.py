@@ -20,7 +20,8 @@ from threedfs.store.arguments import SUFFIX, fit_inputs, read_arguments
 from threedfs.store.files import remove
 from threedfs.store.heartbeat import beating
 from threedfs.store.made import Made
-from threedfs.store.perform import Outcome, Store, explained, fetch, load_stages, make, obtain
+from threedfs.store.perform import Outcome, fetch, load_stages, make, obtain
+from threedfs.store.place import Store, explained
 from threedfs.store.workers import Death, share_out
 
 Announce = Callable[[str, str], Progress]
