@@ -52,6 +52,7 @@ onstart:
     wait_for_cluster()
     forget_scales()
     look_on_demand()
+    fork_on_demand()
 
 
 onsuccess:

@@ -21,7 +21,7 @@ rule crops:
         "results/{sequence}/benchmarks/crops.tsv"
     conda:
         "../../envs/threedfs.yaml"
-    threads: 1
+    threads: THREADS
     resources:
         mem_mb=megabytes(1500),
         runtime=minutes(30),

@@ -39,7 +39,7 @@ rule frames:
         "results/{sequence}/benchmarks/frames.tsv"
     conda:
         "../../envs/threedfs.yaml"
-    threads: 1
+    threads: THREADS
     resources:
         mem_mb=megabytes(1500),
         runtime=minutes(30),

@@ -1,6 +1,7 @@
 # How a run begins and ends; functions, not rules.
 import time
 
+from threedfs.store.fork_server import start_server
 from threedfs.store.heartbeat import name_run
 from threedfs.store.leftovers import wait_for_leftovers
 from threedfs.store.run_lock import take_over
@@ -34,6 +35,12 @@ def look_on_demand():
     """
     if workflow.executor_plugin.common_settings.local_exec:
         workflow.scheduler.job_rate_limiter = None
+
+
+def fork_on_demand():
+    """Have jobs on this machine forked from a process that has imported the libraries."""
+    if workflow.executor_plugin.common_settings.local_exec:
+        start_server()
 
 
 def finish(unfinished=()):

@@ -17,7 +17,7 @@ rule shrink:
         "results/{sequence}/benchmarks/shrink.tsv"
     conda:
         "../../envs/threedfs.yaml"
-    threads: 1
+    threads: THREADS
     resources:
         mem_mb=megabytes(1500),
         runtime=minutes(20),

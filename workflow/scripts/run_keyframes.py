@@ -1,7 +1,11 @@
 """Hand a rule's names to its stages, for every keyframe; the only adapter of rules that work on keyframes."""
-# ruff: noqa: F821 (Snakemake defines `snakemake` in a script)
+# ruff: noqa: E402, F821 (Snakemake defines `snakemake` in a script; what is imported later is imported by the fork)
 
 from pathlib import Path
+
+from threedfs.store.fork_server import hand_over
+
+hand_over()
 
 from threedfs.store.command import run_keyframes
 

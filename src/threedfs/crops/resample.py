@@ -81,7 +81,7 @@ def _filmed_places(lens: Lens, camera: Camera, finer: int) -> tuple[np.ndarray, 
     return places, inside
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def _distort(fx, fy, cx, cy, filmed, distortion, turning, first, last, finer, places, inside):
     """Write where each sample lies in the image of a lens, as `geometry.distortion.distort`, and pixels without it."""
     for row in range(places.shape[0]):

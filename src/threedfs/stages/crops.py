@@ -18,6 +18,7 @@ from threedfs.io.poses import read_poses
 from threedfs.io.volumes import read_support
 from threedfs.job import Job
 from threedfs.params.crops import CropsParams
+from threedfs.read_ahead import read_ahead
 
 
 def run(
@@ -57,12 +58,16 @@ def run(
     of_frame = {view.name: (view, crop) for view, crop in zip(filmed, placed, strict=True)}
 
     def cut():
-        for picture in job.progress.track(scanned.pictures(), "source frame", len(scanned.names)):
-            if picture.name in of_frame:
-                view, crop = of_frame[picture.name]
-                yield Crop(picture.name, *resample(picture.load(), Lens(view.camera, *posed.distortion), crop.camera))
+        pictures = read_ahead(
+            (picture for picture in scanned.pictures() if picture.name in of_frame), threads=job.threads
+        )
+        for picture in job.progress.track(pictures, "crop", len(of_frame)):
+            view, crop = of_frame[picture.name]
+            yield Crop(picture.name, *resample(picture.load(), Lens(view.camera, *posed.distortion), crop.camera))
 
-    write_crops(crops, cut(), job.header, ordered=scanned.ordered, source_shape=scanned.shape)
+    write_crops(
+        crops, read_ahead(cut(), threads=job.threads), job.header, ordered=scanned.ordered, source_shape=scanned.shape
+    )
     moved = []
     xyz = read_points(points).xyz
     for entry in entries.values():

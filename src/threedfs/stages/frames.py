@@ -10,6 +10,7 @@ from threedfs.frames.true_masks import check_true_masks
 from threedfs.io.frames import write_frames
 from threedfs.job import Job
 from threedfs.params.frames import FramesParams
+from threedfs.read_ahead import read_ahead
 
 
 def run(*, source: Path, masks: Path | None, frames: Path, params: FramesParams, job: Job) -> None:
@@ -40,7 +41,7 @@ def run(*, source: Path, masks: Path | None, frames: Path, params: FramesParams,
 
     write_frames(
         frames,
-        checked(),
+        read_ahead(checked(), threads=job.threads),
         job.header,
         ordered=scanned.ordered,
         source_shape=scanned.shape,

@@ -14,6 +14,7 @@ from threedfs.io.keyframes import read_keyframes, read_needs_stereo, write_keyfr
 from threedfs.io.poses import read_poses
 from threedfs.job import Job
 from threedfs.params.shrink import ShrinkParams
+from threedfs.read_ahead import read_ahead
 
 
 def run(
@@ -30,7 +31,13 @@ def run(
             lens = Lens(filmed[name].camera, *posed.distortion)
             yield Crop(name, *resample(store.image(name), lens, small[name].camera))
 
-    write_crops(crops, undistort(), job.header, ordered=store.ordered, source_shape=store.source_shape)
+    write_crops(
+        crops,
+        read_ahead(undistort(), threads=job.threads),
+        job.header,
+        ordered=store.ordered,
+        source_shape=store.source_shape,
+    )
     moved = [
         replace(entry, view=small[entry.view.name], neighbours=tuple(small[view.name] for view in entry.neighbours))
         for entry in entries.values()

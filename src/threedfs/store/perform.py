@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import os
 import resource
+import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -33,6 +34,7 @@ from threedfs.store.records import (
     record_path,
     write_record,
 )
+from threedfs.store.workers import ONE_THREAD
 
 
 @dataclass(frozen=True)
@@ -153,6 +155,8 @@ def load_stages(makers: Mapping[str, Mapping[str, Any]], store: Path, threads: i
     _limit_threads(threads)
     folder, reason = choose_folder(store)
     _keep_kernels(folder / digest_value([makers[module] for module in makers])[:16])
+    if "numba" in sys.modules:  # where this process is a fork of one that has imported it
+        sys.modules["numba"].config.reload_config()
     for module in makers:
         importlib.import_module(module)
     return reason
@@ -235,8 +239,7 @@ def _copy_action(record: Mapping[str, Any], store: Store) -> None:
 
 def _limit_threads(threads: int) -> None:
     """Give numba its threads, and the libraries whose sums depend on their number one."""
-    for variable in ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS"):
-        os.environ[variable] = "1"
+    os.environ.update(ONE_THREAD)
     os.environ["NUMBA_NUM_THREADS"] = str(threads)
 
 

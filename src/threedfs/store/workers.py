@@ -16,6 +16,9 @@ from typing import TypeVar
 Item = TypeVar("Item")
 Answer = TypeVar("Answer")
 
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
+"""What has libraries whose sums depend on the number of threads use one, and start none that forks would lack."""
+
 _SET_DEATH_SIGNAL = 1  # of Linux's prctl
 
 
@@ -82,6 +85,12 @@ def share_out(
             here.close()
 
 
+def die_with_parent() -> None:
+    """Have this process killed when its parent ends; where Linux lets it."""
+    if sys.platform == "linux":
+        ctypes.CDLL(None).prctl(_SET_DEATH_SIGNAL, signal.SIGKILL)
+
+
 def _hand_out(pending: deque[Item], here: Connection, busy: dict[Connection, Item]) -> None:
     if pending:
         busy[here] = pending.popleft()
@@ -93,8 +102,7 @@ def _hand_out(pending: deque[Item], here: Connection, busy: dict[Connection, Ite
 
 def _serve(there: Connection, work: Callable[[Item], Answer], parent: int) -> None:
     """Answer items until the parent ends this process, or has ended itself."""
-    if sys.platform == "linux":
-        ctypes.CDLL(None).prctl(_SET_DEATH_SIGNAL, signal.SIGKILL)
+    die_with_parent()
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the parent gets it too, and ends its workers
     signal.signal(signal.SIGTERM, signal.SIG_DFL)
     try:

@@ -1,0 +1,230 @@
+"""Scripts of jobs run in forks of one process that has imported the libraries, which takes longer than many jobs work.
+
+A script asks for it by `hand_over`. Where no server is, or it cannot serve, as on a cluster, the script goes on itself.
+Needs Linux: elsewhere none is started.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import importlib
+import json
+import os
+import runpy
+import secrets
+import selectors
+import signal
+import socket
+import struct
+import subprocess
+import sys
+from dataclasses import dataclass
+
+from threedfs.store.workers import ONE_THREAD, die_with_parent
+
+ADDRESS = "THREEDFS_FORK_SERVER"
+"""The variable of the environment that tells scripts where the server listens."""
+
+_LIBRARIES = (
+    "scipy.ndimage",
+    "scipy.optimize",
+    "scipy.sparse.linalg",
+    "scipy.spatial",
+    "zarr",
+    "cv2",
+    "pycolmap",
+    "trimesh",
+    "trimesh.ray.ray_pyembree",
+    "skimage.measure",
+    "sklearn.mixture",
+    "maxflow",
+    "av",
+    "yaml",
+    "snakemake.iocontainers",
+    "snakemake.logging",
+)
+_PATIENCE = 5.0
+"""Seconds for a script to say what it wants; it is a process of the same user on the same machine."""
+
+
+@dataclass(frozen=True)
+class Order:
+    """A script to be run.
+
+    Attributes
+    ----------
+    argv : list of str
+        The script and its arguments.
+    folder : str
+    environment : dict of str to str
+    python : str
+        The interpreter that it was started with.
+    """
+
+    argv: list[str]
+    folder: str
+    environment: dict[str, str]
+    python: str
+
+
+def start_server() -> None:
+    """Start the server as a child of this process, which it does not outlive; jobs find it by their environment."""
+    if sys.platform != "linux" or ADDRESS in os.environ:
+        return
+    address = f"threedfs-{secrets.token_hex(16)}"
+    subprocess.Popen(
+        [sys.executable, "-m", "threedfs.store.fork_server", address, str(os.getpid())],
+        stdin=subprocess.DEVNULL,
+        env=os.environ | ONE_THREAD,
+    )
+    os.environ[ADDRESS] = address
+
+
+def hand_over() -> None:
+    """Have the server run this process's script, and exit as that does; return if there is no server.
+
+    The script dies with this process, and this process waits for it.
+    """
+    address = os.environ.pop(ADDRESS, None)
+    if address is None:
+        return
+    with socket.socket(socket.AF_UNIX) as server:
+        try:
+            server.connect(f"\0{address}")
+            if not _is_own(server):
+                return
+            order = Order(sys.argv, os.getcwd(), dict(os.environ), sys.executable)
+            socket.send_fds(server, [b"\n"], [1, 2])
+            server.sendall(json.dumps(vars(order)).encode() + b"\n")
+            answers = server.makefile()
+            if not answers.readline():
+                return
+        except OSError:  # it is not ready yet, or gone
+            return
+        signal.signal(signal.SIGINT, signal.SIG_DFL)  # nothing is left to tidy up here
+        status = answers.readline()
+    if not status:
+        sys.exit("threedfs: the process that jobs are forked from has ended; run again.")
+    code = int(status)
+    sys.exit(code if code >= 0 else 128 - code)
+
+
+def serve(address: str) -> Order | None:
+    """Fork for every script that is handed over, and tell each how its fork has ended.
+
+    Returns
+    -------
+    Order or None
+        In a fork: what to run. The server itself ends with its parent, and does not return.
+    """
+    with socket.socket(socket.AF_UNIX) as door, selectors.DefaultSelector() as waiting:
+        door.bind(f"\0{address}")
+        door.listen()
+        waiting.register(door, selectors.EVENT_READ)
+        forks: dict[int, tuple[int, socket.socket]] = {}  # by descriptor of the process: its number, and who asked
+        while True:
+            for key, _ in waiting.select():
+                if key.fileobj is door:
+                    asking = door.accept()[0]
+                    received = _receive(asking)
+                    if received is None:
+                        asking.close()
+                        continue
+                    order, streams = received
+                    child = os.fork()
+                    if child == 0:
+                        for _, other in forks.values():
+                            other.close()
+                        asking.close()
+                        _take_over(order, streams)
+                        return order
+                    for stream in streams:
+                        os.close(stream)
+                    ending = os.pidfd_open(child)  # can be read when the fork has ended; not inherited
+                    forks[ending] = child, asking
+                    waiting.register(ending, selectors.EVENT_READ)
+                    waiting.register(asking, selectors.EVENT_READ, child)
+                    _tell(asking, "forked")
+                elif key.data is not None:  # who asked is gone
+                    waiting.unregister(key.fileobj)
+                    os.kill(key.data, signal.SIGKILL)
+                else:
+                    child, asking = forks.pop(key.fd)
+                    waiting.unregister(key.fd)
+                    os.close(key.fd)
+                    _tell(asking, str(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])))
+                    with contextlib.suppress(KeyError):
+                        waiting.unregister(asking)
+                    asking.close()
+
+
+def _receive(asking: socket.socket) -> tuple[Order, list[int]] | None:
+    """Return what a script asks for and the streams that it writes to, or None if it cannot be served."""
+    if not _is_own(asking):
+        return None
+    asking.settimeout(_PATIENCE)
+    try:
+        streams = socket.recv_fds(asking, 1, 2)[1]
+        order = Order(**json.loads(asking.makefile().readline()))
+    except (OSError, ValueError, TypeError):
+        return None
+    if len(streams) == 2 and order.python == sys.executable:
+        return order, streams
+    for stream in streams:
+        os.close(stream)
+    return None
+
+
+def _take_over(order: Order, streams: list[int]) -> None:
+    """Make this fork what the script's own process was."""
+    os.setsid()  # Ctrl-C reaches the process that asked, with which this one dies
+    die_with_parent()
+    for number, stream in zip((1, 2), streams, strict=True):
+        os.dup2(stream, number)
+        os.close(stream)
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
+    os.chdir(order.folder)
+    os.environ.clear()
+    os.environ.update(order.environment)
+    sys.argv[:] = order.argv
+
+
+def _is_own(other: socket.socket) -> bool:
+    """Say whether the process at the other end is this user's."""
+    size = struct.calcsize("3i")
+    _, user, _ = struct.unpack("3i", other.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, size))
+    return user == os.geteuid()
+
+
+def _tell(asking: socket.socket, line: str) -> None:
+    with contextlib.suppress(OSError):  # it may be gone
+        asking.sendall(f"{line}\n".encode())
+
+
+def _import_libraries() -> None:
+    for name in _LIBRARIES:
+        with contextlib.suppress(ImportError):  # jobs that need it will say so
+            importlib.import_module(name)
+    from numba.core.registry import cpu_target
+
+    cpu_target.typing_context.refresh()  # takes longer than the import, and is done when a kernel is loaded
+    cpu_target.target_context.refresh()
+
+
+def main(address: str, parent: str) -> None:
+    """Serve until the parent ends; in a fork, run the script."""
+    die_with_parent()
+    if os.getppid() != int(parent):
+        return
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_IGN)  # the parent decides
+    _import_libraries()
+    order = serve(address)
+    if order:
+        sys.path[0] = os.path.dirname(order.argv[0])
+        runpy.run_path(order.argv[0], run_name="__main__")
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
