@@ -1,13 +1,16 @@
-"""Items made by a thread of their own while those before them are used."""
+"""Items made by other threads while those before them are used."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections import deque
+from collections.abc import Callable, Iterable, Iterator
+from concurrent.futures import ThreadPoolExecutor
 from queue import Full, Queue
 from threading import Event, Thread
 from typing import TypeVar
 
 Item = TypeVar("Item")
+Made = TypeVar("Made")
 
 _ITEM, _FAULT, _END = range(3)
 
@@ -68,3 +71,36 @@ def read_ahead(items: Iterable[Item], *, threads: int, count: int = 4) -> Iterat
     finally:
         given_up.set()
         maker.join()
+
+
+def map_ahead(make: Callable[[Item], Made], items: Iterable[Item], *, threads: int) -> Iterator[Made]:
+    """Yield what is made of each item, in their order, by several threads, a few items ahead of their use.
+
+    Parameters
+    ----------
+    make : callable
+        Best one whose work leaves the interpreter free. With one thread it is called when its result is asked for.
+    items : iterable
+        Run through once, by the thread that asks.
+    threads : int
+        Changes no result.
+
+    Raises
+    ------
+    Exception
+        What making one raises, in its place among the others.
+    """
+    if threads < 2:
+        yield from map(make, items)
+        return
+    with ThreadPoolExecutor(threads) as pool:
+        making: deque = deque()
+        try:
+            for item in items:
+                making.append(pool.submit(make, item))
+                if len(making) > threads:
+                    yield making.popleft().result()
+            while making:
+                yield making.popleft().result()
+        finally:
+            pool.shutdown(cancel_futures=True)

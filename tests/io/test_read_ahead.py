@@ -5,7 +5,7 @@ import time
 
 import pytest
 
-from threedfs.read_ahead import read_ahead
+from threedfs.read_ahead import map_ahead, read_ahead
 
 
 @pytest.mark.parametrize("threads", [1, 2, 5])
@@ -62,3 +62,32 @@ def test_the_next_item_is_made_while_one_is_used():
     assert next(ahead) == 0
     assert second.wait(60)
     assert list(ahead) == [1]
+
+
+@pytest.mark.parametrize("threads", [1, 2, 5])
+def test_what_is_made_of_items_comes_in_their_order(threads):
+    assert list(map_ahead(lambda item: item**2, range(50), threads=threads)) == [item**2 for item in range(50)]
+    assert list(map_ahead(str, [], threads=threads)) == []
+
+
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_fault_in_making_comes_in_its_place(threads):
+    seen = []
+    with pytest.raises(ZeroDivisionError):
+        for made in map_ahead(lambda item: 6 // (3 - item), range(10), threads=threads):
+            seen.append(made)
+    assert seen == [2, 3, 6]
+
+
+def test_no_more_items_are_taken_than_threads_can_hold():
+    taken = []
+    ahead = map_ahead(lambda item: item, (taken.append(item) or item for item in range(100)), threads=2)
+    assert next(ahead) == 0
+    assert len(taken) == 3
+    ahead.close()
+    assert len(taken) == 3
+
+
+def test_threads_make_at_the_same_time():
+    both = threading.Barrier(2, timeout=60)
+    assert len(list(map_ahead(lambda _: both.wait(), range(4), threads=2))) == 4

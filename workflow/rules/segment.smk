@@ -23,7 +23,7 @@ rule segment:
         cut="joint|images",
     conda:
         "../../envs/threedfs.yaml"
-    threads: 1
+    threads: THREADS
     resources:
         mem_mb=memory_of("segment"),
         runtime=minutes(30),

@@ -48,7 +48,7 @@ def start_fusion(
 def fuse_views(
     votes: Iterable[tuple], fused: SoftMaximum | HardMaximum | WeightedAverage
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Fuse the depth maps of all views (3.3.1); never more than one is held.
+    """Fuse the depth maps of all views (3.3.1); never more than a few are held.
 
     Parameters
     ----------
@@ -66,8 +66,11 @@ def fuse_views(
     UserError
         If no view sees any voxel.
     """
-    for vote in votes:
-        fused.add(*vote)
+    if isinstance(fused, SoftMaximum):
+        fused.add_all(votes)
+    else:
+        for vote in votes:
+            fused.add(*vote)
     sdf, seen = fused.result()
     if not seen.any():
         raise UserError(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numba
 import numpy as np
@@ -12,6 +13,7 @@ from scipy.ndimage import gaussian_filter
 from threedfs.checks import check_shape
 from threedfs.fusion.view_sdf import invert_depth, measure_voxel, relate
 from threedfs.geometry.projection import normals_from_depth, pixel_grid
+from threedfs.read_ahead import map_ahead
 from threedfs.types import Camera, View, VoxelGrid
 
 UNSEEN = 1.0
@@ -122,6 +124,27 @@ class SoftMaximum:
         UserError
             If a map has not the shape of the view's images.
         """
+        self._vote(self._weigh(view, depth, confidence, free_depth))
+
+    def add_all(self, votes: Iterable[tuple]) -> None:
+        """Let views vote one after the other; what concerns one view alone is worked out ahead, by other threads.
+
+        Parameters
+        ----------
+        votes : iterable of tuple
+            Of each view what `add` takes.
+        """
+        for ballot in map_ahead(lambda vote: self._weigh(*vote), votes, threads=self._threads):
+            self._vote(ballot)
+
+    def _weigh(
+        self,
+        view: View,
+        depth: np.ndarray,
+        confidence: np.ndarray | None = None,
+        free_depth: np.ndarray | None = None,
+    ) -> tuple:
+        """Return what `_add_view` takes of a view."""
         shape = view.camera.shape
         maps = {"depth": depth, "confidence": confidence, "free depth": free_depth}
         for name, values in maps.items():
@@ -131,19 +154,11 @@ class SoftMaximum:
         handicap = self._distrust * (1.0 - trust)
         hidden = 0.0 if confidence is None else self._hidden
         free = np.zeros(shape, np.float32) if free_depth is None else free_depth.astype(np.float32)
+        return relate(self.grid, view), invert_depth(depth), handicap, free, hidden
+
+    def _vote(self, ballot: tuple) -> None:
         numba.set_num_threads(max(1, min(self._threads, numba.config.NUMBA_NUM_THREADS)))
-        _add_view(
-            self._weighted,
-            self._weight,
-            self._seen,
-            relate(self.grid, view),
-            invert_depth(depth),
-            handicap,
-            free,
-            hidden,
-            self._hidden_from,
-            *self._settings,
-        )
+        _add_view(self._weighted, self._weight, self._seen, *ballot, self._hidden_from, *self._settings)
 
     def add_field(self, field: np.ndarray, trust: float | np.ndarray) -> None:
         """Let a field (nx, ny, nz) in [-1, 1] vote everywhere, as a view's surface does.
@@ -193,7 +208,7 @@ def facing_cosine(camera: Camera, depth: np.ndarray) -> np.ndarray:
     return np.nan_to_num(-(normals_from_depth(camera, smooth) * rays).sum(-1))
 
 
-@njit(cache=True, parallel=True)
+@njit(nogil=True, cache=True, parallel=True)
 def _add_view(
     weighted,
     weight,

@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit, prange
 
 from threedfs.geometry.grid import voxel_places
+from threedfs.read_ahead import map_ahead
 from threedfs.segment.lookup import find_pixel
 from threedfs.segment.outline import depth_inside
 from threedfs.types import View, VoxelGrid
@@ -46,14 +47,14 @@ def measure_hull(
     """
     places = np.flatnonzero(allowed)
     centres = voxel_places(grid, places)
-    count = sum(masks[name].any() for name in views)
+    shown = [name for name in views if masks[name].any()]
+    count = len(shown)
     ranks = [min(int(share * count), max(count - 1, 0)) for share in tolerances]
     largest = np.full((len(places), max(ranks) + 1), -1, np.float32)
     numba.set_num_threads(max(1, min(threads, numba.config.NUMBA_NUM_THREADS)))
-    for name, view in views.items():
-        if not masks[name].any():
-            continue
-        outside = -depth_inside(masks[name] | ~valid[name])
+    depths = map_ahead(lambda name: depth_inside(masks[name] | ~valid[name]), shown, threads=threads)
+    for name, inside in zip(shown, depths, strict=True):
+        view, outside = views[name], -inside
         # world length of a pixel, per depth, in ramps
         share = 1 / (view.camera.fx * grid.spacing * ramp)
         _insert(centres, view.px_from_world, view.cam_from_world[2], outside, share, largest)
@@ -65,7 +66,7 @@ def measure_hull(
     return fields
 
 
-@njit(cache=True, parallel=True, error_model="numpy")
+@njit(nogil=True, cache=True, parallel=True, error_model="numpy")
 def _insert(centres, px_from_world, depth_from_world, outside, share, largest):
     """Put each voxel's distance from one cone, in ramps, in its place among the largest so far, in falling order."""
     d = depth_from_world

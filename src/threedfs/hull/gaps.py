@@ -12,6 +12,7 @@ from scipy import ndimage
 
 from threedfs.geometry.grid import voxel_places
 from threedfs.hull.distance import measure_hull
+from threedfs.read_ahead import map_ahead
 from threedfs.segment.lookup import nearest_pixels
 from threedfs.segment.outline import depth_inside, draw_voxels
 from threedfs.types import View, VoxelGrid
@@ -79,6 +80,7 @@ def find_gaps(
     grid: VoxelGrid,
     least_views: int,
     odds: float = 0.0,
+    threads: int = 1,
 ) -> np.ndarray:
     """Return the voxels (nx, ny, nz) bool of the hull that views show on gaps; as `fit_masks`.
 
@@ -88,6 +90,8 @@ def find_gaps(
         The masks' hull, negative inside.
     odds : float
         How many views must show a voxel on a gap for each that shows it well outside of its mask.
+    threads : int
+        Changes no result.
     """
     places = np.flatnonzero(allowed & (hull < 0))
     centres = voxel_places(grid, places)
@@ -96,19 +100,27 @@ def find_gaps(
         return filled
     own = np.flatnonzero(allowed & solid)
     middle = np.append((voxel_places(grid, own) if len(own) else centres).mean(axis=0), 1)
-    covered = draw_voxels(solid, grid, views)
+    covered = draw_voxels(solid, grid, views, threads)
     gaps, outside = [], np.zeros(len(places), np.int32)
-    for name, view in views.items():
-        gap = masks[name] & ~covered[name]
+
+    def look(name: str) -> tuple[_Gap, np.ndarray] | None:
+        """Return the gap that a view shows, and the voxels that it shows well outside of its mask, if it counts."""
+        view, gap = views[name], masks[name] & ~covered[name]
         if not gap.any() and (odds <= 0 or not masks[name].any()):
-            continue
+            return None
         row, column = nearest_pixels(view, centres)
         footprint = max(1, int(np.ceil(view.camera.fx * grid.spacing / (view.cam_from_world[2] @ middle))))
+        away = np.zeros(0, np.int64)
         if odds > 0:
-            outside[_on(depth_inside(masks[name]) < -_WELL * footprint, row, column)] += 1
+            away = _on(depth_inside(masks[name]) < -_WELL * footprint, row, column)
         wide = cv2.morphologyEx(gap.astype(np.uint8), cv2.MORPH_OPEN, _disc(_RIM * footprint)) > 0
         voxels = _on(gap, row, column)
-        gaps.append(_Gap(voxels, wide[row[voxels], column[voxels]]))
+        return _Gap(voxels, wide[row[voxels], column[voxels]]), away
+
+    for found in map_ahead(look, views, threads=threads):
+        if found is not None:
+            gaps.append(found[0])
+            outside[found[1]] += 1
     apart = ndimage.distance_transform_edt(~solid) if solid.any() else np.full(grid.shape, np.inf)
     near = apart.reshape(-1)[places] <= _REACH
     filled.reshape(-1)[places] = _fill_gaps(gaps, near, np.maximum(least_views, odds * outside))
@@ -132,7 +144,7 @@ def _fill_gaps(gaps: list[_Gap], near: np.ndarray, least_views: np.ndarray) -> n
     return near & (any_gap >= least_views) | (wide >= least_views)
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def _on(mask, row, column):
     """Return the voxels, ascending, whose pixels are in a mask."""
     count = 0

@@ -67,7 +67,7 @@ def rasterise(pixels: np.ndarray, faces: np.ndarray, shape: tuple[int, int]) -> 
     return mask
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def _fill(pixels, faces, mask):
     rows, columns = mask.shape
     for face in range(faces.shape[0]):

@@ -28,7 +28,7 @@ def nearest_pixels(view: View, points: np.ndarray) -> tuple[np.ndarray, np.ndarr
     return _find(np.ascontiguousarray(points), view.px_from_world, view.camera.height, view.camera.width)
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def _find(points, px_from_world, height, width):
     """Return row and column (N,) int32 of the nearest pixels, -1 outside the image and behind the camera."""
     row, column = np.empty(len(points), np.int32), np.empty(len(points), np.int32)
@@ -37,7 +37,7 @@ def _find(points, px_from_world, height, width):
     return row, column
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def find_pixel(x, y, z, px_from_world, height, width):
     """Return row and column of the pixel nearest to a world point, -1 outside the image and behind the camera."""
     m = px_from_world

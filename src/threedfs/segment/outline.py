@@ -11,6 +11,7 @@ from skimage.measure import marching_cubes
 
 from threedfs.geometry.grid import world_from_index
 from threedfs.object.silhouettes import draw_silhouette
+from threedfs.read_ahead import map_ahead
 from threedfs.types import Mesh, View, VoxelGrid
 
 
@@ -30,12 +31,15 @@ def surround_voxels(voxels: np.ndarray, grid: VoxelGrid) -> Mesh:
     return Mesh(world_from_index(grid, vertices.astype(np.float64) + start), faces.astype(np.int64))
 
 
-def draw_voxels(voxels: np.ndarray, grid: VoxelGrid, views: Mapping[str, View]) -> dict[str, np.ndarray]:
+def draw_voxels(
+    voxels: np.ndarray, grid: VoxelGrid, views: Mapping[str, View], threads: int = 1
+) -> dict[str, np.ndarray]:
     """Return the silhouette (H, W) bool of a set of voxels in each view; nothing where the set is empty."""
     if not voxels.any():
         return {name: np.zeros(view.camera.shape, bool) for name, view in views.items()}
     surface = surround_voxels(voxels, grid)
-    return {name: draw_silhouette(surface, view) for name, view in views.items()}
+    drawn = map_ahead(lambda view: draw_silhouette(surface, view), views.values(), threads=threads)
+    return dict(zip(views, drawn, strict=True))
 
 
 def depth_inside(mask: np.ndarray) -> np.ndarray:

@@ -19,6 +19,7 @@ from threedfs.io.volumes import read_support, read_volume
 from threedfs.job import Job
 from threedfs.params.rules import make_rule
 from threedfs.params.segment import SegmentParams
+from threedfs.read_ahead import map_ahead
 from threedfs.segment.appearance import Appearance
 from threedfs.segment.energy import OBJECT
 from threedfs.segment.gather import (
@@ -85,7 +86,7 @@ def run(
     found = segment_jointly(images, volume if cut == "joint" else None, rule, generator, job.progress.note)
     masks = {name: images[name].superpixels.paint(own == OBJECT) for name, own in found.superpixels.items()}
     if params.refine:
-        drawn = {} if found.voxels is None else draw_voxels(found.voxels == OBJECT, place.grid, views)
+        drawn = {} if found.voxels is None else draw_voxels(found.voxels == OBJECT, place.grid, views, job.threads)
         finer = make_rule(
             RefineRule,
             params,
@@ -93,10 +94,12 @@ def run(
             pair_weight=params.refine_pair_weight,
             contrast=params.refine_contrast,
         )
-        masks = {
-            name: refine_mask(images[name], own, found.colors, drawn.get(name), finer)
-            for name, own in job.progress.track(found.superpixels.items(), "mask", len(views))
-        }
+
+        def refine(name):
+            return refine_mask(images[name], found.superpixels[name], found.colors, drawn.get(name), finer)
+
+        refined = map_ahead(refine, found.superpixels, threads=job.threads)
+        masks = dict(zip(found.superpixels, job.progress.track(refined, "mask", len(views)), strict=True))
     voxels = np.zeros((0, 0, 0), np.uint8) if found.voxels is None else found.voxels
     write_segmentation(labels, Segmentation(masks, place.grid, voxels, found.energies, found.swaps), job.header)
     write_appearance(appearance, Appearance(found.colors, table), job.header)

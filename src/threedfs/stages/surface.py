@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
 
@@ -28,6 +27,7 @@ from threedfs.params.rules import make_rule
 from threedfs.params.schema import make_params
 from threedfs.params.segment import SegmentParams
 from threedfs.params.surface import SurfaceParams
+from threedfs.read_ahead import map_ahead
 from threedfs.segment.frame_mask import mask_frame, spread_frames
 from threedfs.segment.gather import pixels_at
 from threedfs.segment.refine import RefineRule
@@ -85,16 +85,18 @@ def run(
     grid = lay_grid(place.box, place.plane, cut.masks, views, valid, loosest, params.longest_side)
     fused_as = make_params(FuseObjectParams, fusion)
     paths = {path.name.removesuffix(".zarr.zip"): path for path in depth}
-    rule, corners, own = make_rule(TrustRule, params), place.box.corners(), {}
+    rule, corners = make_rule(TrustRule, params), place.box.corners()
 
     def depth_of(name):
         return read_depth_map(paths[name]).depth
 
-    for name, view in views.items():
+    def trust_of(name):
         said, matched = trust.read(name), read_depth_map(paths[name]).confidence
-        length = read_object_pixels(keyframes, name) or measure_object([view], corners) or 0.0
+        length = read_object_pixels(keyframes, name) or measure_object([views[name]], corners) or 0.0
         reach = params.matched_reach * length
-        own[name] = trust_depth(said.agree, said.confidence, matched, cut.masks[name], reach, rule)
+        return trust_depth(said.agree, said.confidence, matched, cut.masks[name], reach, rule)
+
+    own = dict(zip(views, map_ahead(trust_of, views, threads=job.threads), strict=True))
     sureness = rate_sureness(own.values(), (cut.masks[name] for name in own), rule)
     voxel = cut.grid.spacing  # of the object's grid: settings of fuse_object count in its voxels
     share = 1 - sureness * (1 - params.sure_clip_share)
@@ -108,8 +110,7 @@ def run(
         hidden_distance=share * fused_as.hidden_distance * voxel,
         threads=job.threads,
     )
-    for name, view in job.progress.track(views.items(), "keyframe", len(views)):
-        fused.add(view, depth_of(name), own[name])
+    fused.add_all((views[name], depth_of(name), own[name]) for name in job.progress.track(views, "keyframe"))
     confirmed = ConfirmedDepth(fused, clip, sureness, views, own, depth_of, job.threads)
     shaping = make_rule(ShapeRule, params, complete=make_rule(HullRule, params))
     surface = shape_surface(confirmed, place.plane, cut.masks, views, valid, shaping)
@@ -131,9 +132,8 @@ def run(
             ramp = pixels_at(place.box, view, reach)
             return mask_frame(view, images.image(name), valid[name], silhouette, ramp, learnt, refine)
 
-        with ThreadPoolExecutor(job.threads) as pool:
-            found = job.progress.track(pool.map(outline, frames), "frame", len(frames))
-            outlines = dict(zip(frames, found, strict=True))
+        found = job.progress.track(map_ahead(outline, frames, threads=job.threads), "frame", len(frames))
+        outlines = dict(zip(frames, found, strict=True))
         surface = shape_surface(confirmed, place.plane, outlines, frames, valid, shaping) or surface
     if surface is None:
         raise UserError(

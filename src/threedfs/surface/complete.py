@@ -39,6 +39,7 @@ def complete_depth(
     masks: Mapping[str, np.ndarray],
     views: Mapping[str, View],
     rule: HullRule,
+    threads: int = 1,
 ) -> np.ndarray:
     """Return the field (nx, ny, nz) float32 in [-1, 1] that agrees with depth and masks, negative inside the object.
 
@@ -60,13 +61,16 @@ def complete_depth(
     masks : mapping of str to (H, W) bool
     views : mapping of str to View
     rule : HullRule
+    threads : int
+        Changes no result.
     """
 
     shown = sum(masks[name].any() for name in views)
     least_views = max(rule.gap_views, round(rule.gap_share * shown))
 
     def gaps_of(field):
-        return find_gaps((field < 0) & above, filler, above, masks, views, fused.grid, least_views, rule.gap_odds)
+        solid = (field < 0) & above
+        return find_gaps(solid, filler, above, masks, views, fused.grid, least_views, rule.gap_odds, threads)
 
     fused.add_field(hull, (1 - sureness) * rule.hull_trust + sureness * rule.sure_hull_trust)
     gaps = gaps_of(np.maximum(fused.result()[0], bound))

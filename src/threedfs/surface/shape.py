@@ -75,7 +75,9 @@ def shape_surface(
         tolerances=(rule.hull_tolerance, rule.bound_tolerance, rule.gap_tolerance),
         threads=depth.threads,
     )
-    sdf = complete_depth(deepcopy(depth.fused), *hulls, sureness, height > 0, masks, views, rule.complete)
+    sdf = complete_depth(
+        deepcopy(depth.fused), *hulls, sureness, height > 0, masks, views, rule.complete, depth.threads
+    )
     sdf = close_pits(sdf, rule.closing * (1 - sureness))
     sdf = fill_unseen(sdf, hulls[-1], height > 0, plane.normal, depth, rule.free_share)
     alone = mask_field(sdf, np.ones(grid.shape, bool), height, grid.spacing, rule.medians)
