@@ -187,3 +187,16 @@ def test_junk_does_no_harm(head, ask, sent):
         client.shutdown(socket.SHUT_WR)
         assert client.recv(10) == b""
     assert ask(head[1], "raise SystemExit(4)").wait(60) == 4
+
+
+def test_a_fork_follows_the_settings_of_its_job(head, ask, tmp_path):
+    body = """
+from pathlib import Path
+from threedfs.store.perform import load_stages
+import numba
+load_stages({}, Path("store"), 3)
+print(numba.config.NUMBA_NUM_THREADS, numba.config.CACHE_DIR)
+"""
+    threads, folder = ask(head[1], body).communicate(timeout=60)[0].split()
+    assert threads == "3"
+    assert folder.startswith(str(tmp_path / "store/kernels"))

@@ -20,7 +20,7 @@ import subprocess
 import sys
 from dataclasses import dataclass
 
-from threedfs.store.workers import ONE_THREAD, die_with_parent
+from threedfs.store.workers import FORKED, ONE_THREAD, die_with_parent
 
 ADDRESS = "THREEDFS_FORK_SERVER"
 """The variable of the environment that tells scripts where the server listens."""
@@ -186,7 +186,7 @@ def _take_over(order: Order, streams: list[int]) -> None:
         signal.signal(number, signal.default_int_handler if number == signal.SIGINT else signal.SIG_DFL)
     os.chdir(order.folder)
     os.environ.clear()
-    os.environ.update(order.environment)
+    os.environ.update(order.environment | {FORKED: "1"})
     sys.argv[:] = order.argv
 
 

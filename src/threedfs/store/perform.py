@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import os
 import resource
-import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -34,7 +33,7 @@ from threedfs.store.records import (
     record_path,
     write_record,
 )
-from threedfs.store.workers import ONE_THREAD
+from threedfs.store.workers import FORKED, ONE_THREAD
 
 
 @dataclass(frozen=True)
@@ -155,8 +154,8 @@ def load_stages(makers: Mapping[str, Mapping[str, Any]], store: Path, threads: i
     _limit_threads(threads)
     folder, reason = choose_folder(store)
     _keep_kernels(folder / digest_value([makers[module] for module in makers])[:16])
-    if "numba" in sys.modules:  # where this process is a fork of one that has imported it
-        sys.modules["numba"].config.reload_config()
+    if FORKED in os.environ:  # numba is imported, and has read its settings before they were made
+        importlib.import_module("numba").config.reload_config()
     for module in makers:
         importlib.import_module(module)
     return reason

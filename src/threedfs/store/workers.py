@@ -18,6 +18,8 @@ Answer = TypeVar("Answer")
 
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "MKL_NUM_THREADS": "1", "OMP_NUM_THREADS": "1"}
 """What has libraries whose sums depend on the number of threads use one, and start none that forks would lack."""
+FORKED = "THREEDFS_FORKED"
+"""A variable of the environment that is set in forks of a process that has imported the libraries."""
 
 _SET_DEATH_SIGNAL = 1  # of Linux's prctl
 
