@@ -13,6 +13,7 @@ import pytest
 from threedfs.params.document import FILES
 from threedfs.params.schema import declared_stages
 from threedfs.store.arguments import read_arguments
+from threedfs.store.fork_server import ADDRESS
 
 ROOT = Path(__file__).resolve().parents[2]
 BIN = Path(sys.executable).parent
@@ -108,7 +109,12 @@ class Project:
 
     @property
     def environment(self) -> dict[str, str]:
-        """The environment in which the copy's package comes first."""
+        """The environment in which the copy's package comes first. No job is forked: stand-ins import no libraries."""
+        return {**self.forking, ADDRESS: ""}
+
+    @property
+    def forking(self) -> dict[str, str]:
+        """The same with jobs that are forked."""
         return {**os.environ, "PYTHONPATH": str(self.folder / "src"), "PATH": f"{BIN}:{os.environ['PATH']}"}
 
     def run(self, *arguments: str, good: bool = True) -> str:

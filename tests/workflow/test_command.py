@@ -120,7 +120,7 @@ def test_an_interrupted_run_says_how_to_go_on_leaves_nobody_and_is_resumed(proje
     running = subprocess.Popen(
         [sys.executable, "-m", "threedfs.cli.main", "run", "mug.mp4"],
         cwd=tmp_path,
-        env=project.environment,
+        env=project.forking,
         stdout=subprocess.PIPE,
         stderr=subprocess.STDOUT,
         text=True,

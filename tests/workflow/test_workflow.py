@@ -136,6 +136,16 @@ def test_cores_do_not_change_a_byte(finished):
     assert finished.artifacts() == first
 
 
+def test_forked_jobs_make_the_same_bytes(finished):
+    whole = finished.artifacts()
+    shutil.rmtree(finished.folder / "results")
+    told = "    import sys\n    job.progress.note('forked' if 'numba' in sys.modules else 'alone')\n    write("
+    finished.edit("src/threedfs/stages/evaluate.py", "    write(", told)
+    done = subprocess.run(finished.command, cwd=finished.folder, env=finished.forking, check=True, capture_output=True)
+    assert b"evaluate of sample fused_sdf: forked" in done.stderr
+    assert finished.artifacts() == whole
+
+
 def test_photo_edited_in_place_is_noticed(project):
     photos = project.folder / "photos"
     photos.mkdir()
@@ -419,7 +429,7 @@ def test_killed_run_goes_on_to_the_same_bytes(finished):
     process = subprocess.Popen(
         finished.command,
         cwd=finished.folder,
-        env={**finished.environment, "STUB_PAUSE": "0.3"},
+        env={**finished.forking, "STUB_PAUSE": "0.3"},
         stdout=subprocess.DEVNULL,
         stderr=subprocess.DEVNULL,
         start_new_session=True,

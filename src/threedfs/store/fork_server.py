@@ -23,7 +23,7 @@ from dataclasses import dataclass
 from threedfs.store.workers import FORKED, ONE_THREAD, die_with_parent
 
 ADDRESS = "THREEDFS_FORK_SERVER"
-"""The variable of the environment that tells scripts where the server listens."""
+"""The variable of the environment that tells scripts where the server listens; set but empty, none is started."""
 
 _LIBRARIES = (
     "scipy.ndimage",
@@ -85,8 +85,8 @@ def hand_over() -> None:
 
     The script dies with this process, and this process waits for it.
     """
-    address = os.environ.pop(ADDRESS, None)
-    if address is None:
+    address = os.environ.pop(ADDRESS, "")
+    if not address:
         return
     with socket.socket(socket.AF_UNIX) as server:
         try:
