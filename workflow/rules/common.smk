@@ -34,6 +34,7 @@ TRIED = [name for name in SEQUENCES if SEQUENCES[name]["depth_experiment"]]
 THREADS = 2 if len(SEQUENCES) == 1 else 1
 # Keyframes that a job works on at once: on this machine its cores, shared by the sequences; on a cluster a part of a node.
 KEYFRAMES_AT_ONCE = 8 if CORES is None else max(1, CORES // max(1, len(SEQUENCES)))
+FIRST = 1  # priority of the chain to the textured mesh: what hangs on its side fills the second core
 STORE_DIGESTS = InputDigests(Path(config["store"]) / "digests")
 
 

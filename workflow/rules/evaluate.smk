@@ -92,6 +92,7 @@ rule photographs:
         "results/{sequence}/logs/photographs/{method}.log",
     benchmark:
         "results/{sequence}/benchmarks/photographs/{method}.tsv"
+    priority: FIRST
     conda:
         "../../envs/threedfs.yaml"
     threads: 1

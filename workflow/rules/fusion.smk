@@ -11,6 +11,7 @@ rule consistency:
         "results/{sequence}/{scope}logs/consistency.log",
     benchmark:
         "results/{sequence}/{scope}benchmarks/consistency.tsv"
+    priority: FIRST
     conda:
         "../../envs/threedfs.yaml"
     threads: THREADS
@@ -39,6 +40,7 @@ rule fuse_object:
         "results/{sequence}/logs/fuse_object.log",
     benchmark:
         "results/{sequence}/benchmarks/fuse_object.tsv"
+    priority: FIRST
     conda:
         "../../envs/threedfs.yaml"
     threads: THREADS

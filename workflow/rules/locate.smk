@@ -15,6 +15,7 @@ rule locate_object:
         "results/{sequence}/benchmarks/locate_object/{field}.tsv"
     wildcard_constraints:
         field="|".join(FIELDS),
+    priority: FIRST
     conda:
         "../../envs/threedfs.yaml"
     threads: 1

@@ -151,6 +151,7 @@ rule surface:
         "results/{sequence}/benchmarks/object/{method}{variant}.tsv"
     wildcard_constraints:
         method="|".join(SURFACES),
+    priority: FIRST
     conda:
         "../../envs/threedfs.yaml"
     threads: THREADS
@@ -186,6 +187,7 @@ rule texture:
         "results/{sequence}/benchmarks/texture/{method}{variant}.tsv"
     wildcard_constraints:
         method="|".join(SURFACES),
+    priority: FIRST
     conda:
         "../../envs/threedfs.yaml"
     threads: 1

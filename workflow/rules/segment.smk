@@ -21,6 +21,7 @@ rule segment:
         "results/{sequence}/benchmarks/segment/{cut}{variant}.tsv"
     wildcard_constraints:
         cut="joint|images",
+    priority: FIRST
     conda:
         "../../envs/threedfs.yaml"
     threads: THREADS
