@@ -12,10 +12,10 @@ from threedfs.matting.trimap import Trimap, trimap_around
 
 BAND = 2.0
 """Pixels to both sides of an outline where opacity is solved for: as far as our masks are wrong."""
-EPSILON = 1e-6
+EPSILON = 1e-4
 """See `matting_laplacian`."""
-TRUST = 0.01
-"""Weight of the mask within the band: a part narrower than the band has no pixel that is known to be object."""
+TRUST = 0.1
+"""Weight of the mask within the band: it decides where colours tell little, and where a part is narrower."""
 
 _RIM = 2
 """Pixels around unknown ones that share a window with them."""

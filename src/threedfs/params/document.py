@@ -153,8 +153,8 @@ _KEYS = {
     "methods": "how the object is made, each with masks and figures of its own, and a mesh but for three: `fused_sdf` "
     "(the views weighed by trust), `deformed_sdf` (its zero level moved onto surface points), `volumetric_gc` (voxels "
     "cut by colour alone), `gc_2d` (images cut by colour, only masks), `spectral_matting` (each image split into soft "
-    "components, only masks), `gc_2d3d_pixel` (images and voxels cut in one, only masks), `gc_2d3d_voxel` (its voxels), "
-    "`gc_select` (their largest piece), `sdf_2d3d_voxel` (the field inside "
+    "components, only masks), `gc_2d3d_pixel` (images and voxels cut in one, only masks), "
+    "`gc_2d3d_voxel` (its voxels), `gc_select` (their largest piece), `sdf_2d3d_voxel` (the field inside "
     "that piece), `surface` (confirmed depth and the hull of the masks), `tsdf` (KinectFusion's weighted average), "
     "`soft_maximum` (Eq. 15 as printed), `hard_maximum` (Eq. 13), `poisson` (the surface points alone)",
     "variants.<name>": "the methods of the joint segmentation once more with settings of its own, "
