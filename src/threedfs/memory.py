@@ -23,7 +23,7 @@ _BYTES_PER_VOXEL = {
     "cut_object": 150,
     "surface": 150,
     "segment": 140,
-    "spectral_matting": 60,
+    "spectral_matting": 30,
     "volumetric_cut": 120,
 }
 """At most, over a cube: the highest peaks of the benchmark's jobs are 0.37 to 0.78 of what these give."""
