@@ -2,7 +2,7 @@
 
     python benchmarks/matting.py [SAMPLES]
 
-A pixel's coverage is the share of SAMPLES x SAMPLES rays (8) that meet the object. Images average the same rays. Masks
+A pixel's coverage is the share of SAMPLES x SAMPLES rays (5) that meet the object. Images average the same rays. Masks
 are the exact ones, and such as are wrong by a pixel or two. Errors are over the pixels within 8 of the outline, mean
 and root of the mean square, in levels of 255.
 """
@@ -61,7 +61,7 @@ def measure(difference: np.ndarray, near: np.ndarray) -> tuple[float, float]:
 
 def main() -> None:
     """Print a table for each take, two frames of it."""
-    samples = int(sys.argv[1]) if len(sys.argv) > 1 else 8
+    samples = int(sys.argv[1]) if len(sys.argv) > 1 else 5
     for name in _TAKES:
         film = sample_film() if name == "sample" else make_take(name).film(120, 640, 4)
         renderer = Renderer(film.scene)

@@ -21,7 +21,7 @@ class SpectralMattingParams:
         50, "smallest eigenvectors of the matting Laplacian that components are made of", minimum=2, maximum=500
     )
     components: int = parameter(
-        16, "components at most; all sets of them are tried, so that each more doubles these", minimum=2, maximum=20
+        20, "components at most; all sets of them are tried, so that each more doubles these", minimum=2, maximum=20
     )
     sparsity: float = parameter(
         0.9,
