@@ -23,11 +23,12 @@ _BYTES_PER_VOXEL = {
     "cut_object": 150,
     "surface": 150,
     "segment": 140,
+    "spectral_matting": 30,
     "volumetric_cut": 120,
 }
 """At most, over a cube: the highest peaks of the benchmark's jobs are 0.37 to 0.78 of what these give."""
 
-_BYTES_PER_PIXEL = {"segment": 80, "surface": 12, "volumetric_cut": 20, "consistency": 40}
+_BYTES_PER_PIXEL = {"segment": 80, "spectral_matting": 5, "surface": 12, "volumetric_cut": 20, "consistency": 40}
 """Of every keyframe, which these stages hold all at once; surface holds masks of three times as many frames."""
 
 _BYTES_PER_PIXEL_AT_WORK = {
@@ -39,6 +40,10 @@ _BYTES_PER_PIXEL_AT_WORK = {
     "depth_trial": 2200,
 }
 """Of each keyframe that a job works on; the highest peaks of the benchmark are 0.4 to 0.8 of what these give."""
+
+
+_BYTES_PER_MATTED_PIXEL = 5000
+"""Of the factors of the matting Laplacian, which fill in a little faster than an image grows."""
 
 
 def estimate_memory(stage: str, longest_side: int, pixels: float = 0, keyframes: int = 0, unknowns: int = 0) -> int:
@@ -84,6 +89,21 @@ def estimate_memory_of_keyframes(rule: str, pixels: float, at_once: int) -> int:
     """
     each = _WORKER + _BYTES_PER_PIXEL_AT_WORK[rule] * pixels / 1e6
     return int(_PROGRAM + at_once * each)
+
+
+def estimate_memory_of_matting(pixels: int, eigenvectors: int) -> int:
+    """Estimate the memory that spectral matting of one image adds to its program, MB.
+
+    Parameters
+    ----------
+    pixels, eigenvectors : int
+
+    Examples
+    --------
+    >>> estimate_memory_of_matting(60_000, 50)
+    480
+    """
+    return int((_BYTES_PER_MATTED_PIXEL + 60 * eigenvectors) * pixels / 1e6)
 
 
 def grow_memory(needed: float, attempt: int) -> int:

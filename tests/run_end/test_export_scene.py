@@ -136,6 +136,22 @@ def test_only_the_masks_that_were_asked_for_are_written(results, tmp_path):
     assert "mask_path" not in (tmp_path / "transforms.json").read_text()
 
 
+def test_alpha_is_soft_where_the_mask_is_not_and_goes_into_rgba(results, scene, tmp_path):
+    """Property: half of it is the mask; it is written only if asked for by its name."""
+    assert main(["export", str(results), str(tmp_path), "--scene", "--masks", "all", "--masks", "alpha"]) == 0
+    assert not (scene / "alphas").exists()
+    for file in FILES:
+        with Image.open(tmp_path / "alphas" / file) as opened:
+            assert opened.mode == "L"
+            alpha = np.asarray(opened)
+        mask = read_mask(scene / f"masks/{file}.png")
+        assert 0 < ((alpha > 0) & (alpha < 255)).mean() < 0.2
+        assert ((alpha > 127) & mask).sum() / ((alpha > 127) | mask).sum() > 0.97
+        with Image.open(tmp_path / "images_rgba" / file) as opened:
+            np.testing.assert_array_equal(np.asarray(opened)[..., 3], alpha)
+        np.testing.assert_array_equal(read_mask(tmp_path / f"masks/{file}.png"), mask)
+
+
 def test_a_scene_is_the_same_bytes_again(results, scene, tmp_path):
     export_scene(results, tmp_path, masks=["colmap", "nerfstudio", "openmvs", "rgba"])
     first = {path.relative_to(scene): path.read_bytes() for path in scene.rglob("*") if path.is_file()}

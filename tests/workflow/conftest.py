@@ -51,6 +51,7 @@ SIGNATURES = {
         "labels appearance",
         "cut",
     ),
+    "spectral_matting": ("field located keyframes crops", "labels", "segmentation"),
     "volumetric_cut": ("support keyframes crops semidense", "labels", ""),
     "cut_object": ("labels field support keyframes poses crops", "mesh silhouettes masks", "method"),
     "surface": (

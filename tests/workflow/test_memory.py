@@ -2,7 +2,12 @@
 
 import pytest
 
-from threedfs.memory import estimate_memory, estimate_memory_of_keyframes, grow_memory
+from threedfs.memory import (
+    estimate_memory,
+    estimate_memory_of_keyframes,
+    estimate_memory_of_matting,
+    grow_memory,
+)
 
 TABLETOP, BLOWTORCH = {"pixels": 640 * 480, "keyframes": 20}, {"pixels": 640 * 480, "keyframes": 67}
 
@@ -40,6 +45,15 @@ def test_estimate_holds_the_peak_of_a_keyframe_and_grows_with_those_at_work(rule
     one, two, three = (estimate_memory_of_keyframes(rule, 640 * 480, at_once) for at_once in (1, 2, 3))
     assert peak < one < 4 * peak
     assert abs(three - two - (two - one)) <= 1
+
+
+@pytest.mark.parametrize(("keyframes", "peak"), [(24, 530), (36, 618)])
+def test_estimate_of_matting_holds_the_peak_and_grows_with_the_pixels_at_work(keyframes, peak):
+    """Regression: the peaks of the sample and of tum_bunny, MB."""
+    held = estimate_memory("spectral_matting", 200, pixels=400_000, keyframes=keyframes)
+    assert peak < held + estimate_memory_of_matting(60_000, 50) < 3 * peak
+    assert estimate_memory_of_matting(120_000, 50) == 2 * estimate_memory_of_matting(60_000, 50)
+    assert estimate_memory_of_matting(60_000, 100) > estimate_memory_of_matting(60_000, 50)
 
 
 def test_every_attempt_asks_for_twice_the_memory():

@@ -295,21 +295,22 @@ def test_patches_are_matched_here_unless_the_gpu_does(finished, engine, gpu, mat
 def test_methods_of_the_segmentation_share_their_cuts(finished):
     """Contract: two cuts serve seven methods; those of pixels have masks and no mesh, and are measured without one.
 
-    The surface alone is painted, and its pictures are compared with photographs.
+    Matting serves one method. The surface alone is painted, and its pictures are compared with photographs.
     """
     cuts = {"gc_2d": "images", "gc_2d3d_pixel": "joint", "gc_2d3d_voxel": "joint", "sdf_2d3d_voxel": "joint"}
-    cuts["surface"] = "joint"
+    cuts |= {"surface": "joint", "spectral_matting": "spectral"}
+    alone = {"gc_2d", "gc_2d3d_pixel", "spectral_matting"}
     (finished.folder / "cuts.yaml").write_text(f"methods: [{', '.join(cuts)}, gc_select, volumetric_gc]\n")
     output = finished.run("--configfile", "cuts.yaml")
-    expected = {"segment": 2, "volumetric_cut": 1, "cut_object": 4, "surface": 1, "pixel_masks": 2, "evaluate": 7}
-    expected |= {"texture": 1, "photographs": 1}
+    expected = {"segment": 2, "volumetric_cut": 1, "cut_object": 4, "surface": 1, "pixel_masks": 3, "evaluate": 8}
+    expected |= {"texture": 1, "photographs": 1, "spectral_matting": 1}
     assert jobs_done(output) == Counter({**expected, "collect": 1})
     results = finished.folder / "results/sample"
     for method, cut in cuts.items():
         made = json.loads((results / f"11_object/{method}/silhouettes.zarr.zip").read_text())
         labels = results / f"10_segment/{cut}.zarr.zip"
         assert made["inputs"]["labels"] == hashlib.sha256(labels.read_bytes()).hexdigest()
-        assert (results / f"11_object/{method}/mesh.ply").exists() is ("pixel" not in method and method != "gc_2d")
+        assert (results / f"11_object/{method}/mesh.ply").exists() is (method not in alone)
         assert (results / f"11_object/{method}/mesh.glb").exists() is (method == "surface")
         assert (results / f"11_object/{method}/textured").exists() is (method == "surface")
     mesh, pictures = results / "11_object/surface/mesh.ply", results / "12_evaluate/surface/photographs.csv"

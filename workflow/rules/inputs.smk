@@ -5,7 +5,11 @@ from functools import lru_cache
 from threedfs.inputs.check import find_fault
 from threedfs.params.configuration import JOINT_METHODS, MESH_METHODS
 from threedfs.io.truth_files import choose_with_depth
-from threedfs.memory import estimate_memory, estimate_memory_of_keyframes
+from threedfs.memory import (
+    estimate_memory,
+    estimate_memory_of_keyframes,
+    estimate_memory_of_matting,
+)
 
 FIELDS = {  # where each method that has one finds the object's field
     "fused_sdf": "07_fusion/object.zarr.zip",
@@ -21,7 +25,11 @@ CUTS = {  # which labels of voxels the other methods with a mesh take it from
     "sdf_2d3d_voxel": "joint",
 }
 SURFACES = {"surface": "joint"}  # methods that weigh depth against masks
-PIXEL_CUTS = {"gc_2d": "images", "gc_2d3d_pixel": "joint"}  # methods of masks alone
+PIXEL_CUTS = {  # methods of masks alone
+    "gc_2d": "images",
+    "gc_2d3d_pixel": "joint",
+    "spectral_matting": "spectral",
+}
 METHODS = [
     *config["methods"],
     *(
@@ -234,6 +242,16 @@ def memory_of_keyframes(rule):
         return grow_memory(needed, attempt)
 
     return estimate
+
+
+def memory_of_matting(wildcards, input, attempt):
+    """Return the MB that spectral matting needs: of the field, of all masks, and of one image at work."""
+    settings = settings_of("spectral_matting")(wildcards)
+    side = settings_of("fuse_object")(wildcards)["longest_side"]
+    pixels, keyframes = pixels_of_view(wildcards), count_keyframes(input)
+    held = estimate_memory("spectral_matting", side, pixels, keyframes)
+    work = estimate_memory_of_matting(settings["pixels"], settings["eigenvectors"])
+    return grow_memory(held + work, attempt)
 
 
 def minutes(once, each=0):

@@ -38,6 +38,35 @@ rule segment:
         "../scripts/run_stage.py"
 
 
+rule spectral_matting:
+    input:
+        field=field_to_segment,
+        located=located_to_segment,
+        keyframes="results/{sequence}/04_crops/keyframes.json",
+        crops="results/{sequence}/04_crops/crops.zarr.zip",
+    output:
+        labels="results/{sequence}/10_segment/spectral.zarr.zip",
+    log:
+        "results/{sequence}/logs/spectral_matting.log",
+    benchmark:
+        "results/{sequence}/benchmarks/spectral_matting.tsv"
+    conda:
+        "../../envs/threedfs.yaml"
+    threads: 1
+    resources:
+        mem_mb=memory_of_matting,
+        runtime=minutes(20, each=2),
+    params:
+        code=code_of("spectral_matting"),
+        settings=settings_of("spectral_matting"),
+        seed=config["seed"],
+        labels=lambda wildcards: {"segmentation": settings_of("segment")(wildcards)},
+    message:
+        "Matte the keyframes of {wildcards.sequence}, one by one."
+    script:
+        "../scripts/run_stage.py"
+
+
 rule volumetric_cut:
     input:
         support="results/{sequence}/03_scene/support.json",

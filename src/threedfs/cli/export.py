@@ -8,7 +8,8 @@ from pathlib import Path
 from threedfs.cli.request import read_height
 from threedfs.errors import UserError
 
-_MASKS = ("colmap", "nerfstudio", "openmvs", "rgba")
+_BINARY = ("colmap", "nerfstudio", "openmvs", "rgba")
+_MASKS = (*_BINARY, "alpha")
 _FEWEST = 100
 """Faces that a mesh is simplified to at most; with fewer nothing of its shape is left."""
 
@@ -34,7 +35,8 @@ def add_export(actions: argparse._SubParsersAction) -> None:
         "--masks",
         choices=(*_MASKS, "all"),
         action="append",
-        help="with --scene, whom masks are for; can be repeated (colmap and nerfstudio)",
+        help="with --scene, whom masks are for; can be repeated (colmap and nerfstudio); alpha is soft at the "
+        "outline, all is the other four",
     )
     parser.add_argument("--method", default="surface", help="whose mesh (surface)")
     parser.set_defaults(act=export)
@@ -68,7 +70,7 @@ def _export_scene(arguments: argparse.Namespace) -> int:
             "size that its run found, and no mesh."
         )
     asked = arguments.masks or ["colmap", "nerfstudio"]
-    kinds = _MASKS if "all" in asked else tuple(dict.fromkeys(asked))
+    kinds = tuple(dict.fromkeys(kind for name in asked for kind in (_BINARY if name == "all" else (name,))))
     count = export_scene(arguments.results, arguments.file, arguments.method, kinds)
     unit = "scene units" if find_scale(arguments.results) is None else "metres"
     print(f"{arguments.file}: {count} frames, their masks and cameras, in {unit}")

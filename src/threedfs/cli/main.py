@@ -21,6 +21,7 @@ _METHODS = {
     "gc_2d3d_voxel": "the voxels of the joint cut",
     "gc_select": "their largest piece",
     "gc_2d": "masks by a cut of the images alone, by colour",
+    "spectral_matting": "masks by spectral matting of each image alone, which the paper tried",
     "volumetric_gc": "voxels cut by colour alone",
     "fused_sdf": "the depth maps fused, each view weighed by how far it is trusted",
     "deformed_sdf": "the same, its surface moved onto surface points",
@@ -149,7 +150,7 @@ def _score(arguments: argparse.Namespace) -> int:
 
 def _list_methods(arguments: argparse.Namespace) -> int:
     for name, meaning in _METHODS.items():
-        print(f"{name:15} {meaning}")
+        print(f"{name:16} {meaning}")
     return 0
 
 

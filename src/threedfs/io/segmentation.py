@@ -14,7 +14,7 @@ from threedfs.io.grids import describe_grid, grid_of
 from threedfs.io.schema import Schema
 from threedfs.types import VoxelGrid
 
-SEGMENTATION = Schema("threedfs/segmentation/2", "segment or volumetric_cut")
+SEGMENTATION = Schema("threedfs/segmentation/2", "segment, spectral_matting or volumetric_cut")
 
 _MASK = "mask_"
 

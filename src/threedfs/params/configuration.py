@@ -18,6 +18,7 @@ METHODS = (
     "deformed_sdf",
     "volumetric_gc",
     "gc_2d",
+    "spectral_matting",
     "gc_2d3d_pixel",
     "gc_2d3d_voxel",
     "gc_select",

@@ -46,8 +46,8 @@ keyframes_at_truth: false
 # Go on without the sequences whose source is absent; they are named at the start.
 skip_absent: false
 
-# How the object is made: fused_sdf, deformed_sdf, volumetric_gc, gc_2d, gc_2d3d_pixel, gc_2d3d_voxel, gc_select,
-# sdf_2d3d_voxel, surface, tsdf, soft_maximum, hard_maximum, poisson.
+# How the object is made: fused_sdf, deformed_sdf, volumetric_gc, gc_2d, spectral_matting, gc_2d3d_pixel,
+# gc_2d3d_voxel, gc_select, sdf_2d3d_voxel, surface, tsdf, soft_maximum, hard_maximum, poisson.
 methods: [surface, gc_2d3d_pixel, sdf_2d3d_voxel]
 
 # The joint segmentation with other settings, beside the configured one: tables tell what each changes.
@@ -150,10 +150,11 @@ _KEYS = {
     "method are scored at all of them, which makes results depend on the truth; for benchmarks. A sequence's own "
     "`keyframes_at_truth` goes before it (default false)",
     "skip_absent": "go on without the sequences whose source is absent; they are named at the start",
-    "methods": "how the object is made, each with masks and figures of its own, and a mesh but for two: `fused_sdf` "
+    "methods": "how the object is made, each with masks and figures of its own, and a mesh but for three: `fused_sdf` "
     "(the views weighed by trust), `deformed_sdf` (its zero level moved onto surface points), `volumetric_gc` (voxels "
-    "cut by colour alone), `gc_2d` (images cut by colour, only masks), `gc_2d3d_pixel` (images and voxels cut in one, "
-    "only masks), `gc_2d3d_voxel` (its voxels), `gc_select` (their largest piece), `sdf_2d3d_voxel` (the field inside "
+    "cut by colour alone), `gc_2d` (images cut by colour, only masks), `spectral_matting` (each image split into soft "
+    "components, only masks), `gc_2d3d_pixel` (images and voxels cut in one, only masks), "
+    "`gc_2d3d_voxel` (its voxels), `gc_select` (their largest piece), `sdf_2d3d_voxel` (the field inside "
     "that piece), `surface` (confirmed depth and the hull of the masks), `tsdf` (KinectFusion's weighted average), "
     "`soft_maximum` (Eq. 15 as printed), `hard_maximum` (Eq. 13), `poisson` (the surface points alone)",
     "variants.<name>": "the methods of the joint segmentation once more with settings of its own, "

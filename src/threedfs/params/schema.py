@@ -36,6 +36,7 @@ STAGES = (
     "deform",
     "superpixels",
     "segment",
+    "spectral_matting",
     "volumetric_cut",
     "object",
     "cut_object",

@@ -9,9 +9,10 @@ import numpy as np
 from PIL import Image
 
 from threedfs.io.atomic import atomic
-from threedfs.io.images import write_mask
+from threedfs.io.images import write_mask, write_png
+from threedfs.matting.closed_form import matte_outline
 
-MASKS = ("colmap", "nerfstudio", "openmvs", "rgba")
+MASKS = ("colmap", "nerfstudio", "openmvs", "rgba", "alpha")
 """Programs, or kinds, that masks are written for."""
 
 
@@ -26,7 +27,9 @@ def write_masks(folder: Path, file: str, image: np.ndarray, mask: np.ndarray, ki
     - colmap, nerfstudio: `masks/NAME.png.png`, white on black; COLMAP finds it by the name of the image, nerfstudio by
       `mask_path` in transforms.json;
     - openmvs: `masks_openmvs/NAME.mask.png`, 255 on 0, for `--mask-path` with `--ignore-mask-label 0`;
-    - rgba: `images_rgba/NAME.png`, the image with the mask as alpha; colours stay beside the object, too.
+    - rgba: `images_rgba/NAME.png`, the image with the mask as alpha; colours stay beside the object, too;
+    - alpha: `alphas/NAME.png`, 8 bits, the share of each pixel that the object covers, by matting about the outline. It
+      is then the alpha of `rgba`, too.
 
     Parameters
     ----------
@@ -42,7 +45,10 @@ def write_masks(folder: Path, file: str, image: np.ndarray, mask: np.ndarray, ki
         write_mask(folder / mask_path_of(file), mask)
     if "openmvs" in kinds:
         write_mask(folder / "masks_openmvs" / f"{file.removesuffix('.png')}.mask.png", mask)
+    alpha = mask.astype(np.uint8) * 255
+    if "alpha" in kinds:
+        alpha = np.rint(matte_outline(image, mask) * 255).astype(np.uint8)
+        write_png(folder / "alphas" / file, alpha)
     if "rgba" in kinds:
-        alpha = mask.astype(np.uint8) * 255
         with atomic(folder / "images_rgba" / file) as temporary:
             Image.fromarray(np.dstack([image, alpha])).save(temporary, format="png")
