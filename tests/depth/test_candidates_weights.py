@@ -49,6 +49,13 @@ def test_coupling_follows_the_papers_recursion():
         assert schedule[t - 1] == pytest.approx(theta, rel=1e-12)
 
 
+def test_coupling_read_as_a_straight_line_leaves_room_for_smoothing():
+    """theta_t = (1 - 0.03 t) theta_0: more than half of the first is left after 15 iterations, 4 % by the recursion."""
+    schedule = coupling_schedule(2.0, 0.03, 15, "linear")
+    assert schedule == pytest.approx([2 * (1 - 0.03 * t) for t in range(1, 16)], rel=1e-12)
+    assert coupling_schedule(2.0, 0.03, 15)[-1] < 0.04 * schedule[-1] / 0.55
+
+
 def test_a_schedule_that_reaches_zero_is_refused():
     with pytest.raises(UserError, match="stays positive"):
         coupling_schedule(1.0, 0.03, 34)

@@ -96,6 +96,7 @@ def run_all(folder, threads=1, point_deviation=0.05):
         depth=depth,
         consistency=agreement,
         support=folder / "support.json",
+        scene=None,
         volume=folder / "object.zarr.zip",
         params=FuseObjectParams(longest_side=60),
         job=job,
@@ -143,6 +144,24 @@ def test_support_and_box(results, table):
     assert (support.box.high > support.box.axes @ table.centre + table.radius).all()
     assert support.box.longest < 2 * 2 * table.radius
     assert support.figures["thickness"] == pytest.approx(2 * table.radius, rel=0.2)
+
+
+def test_one_grid_for_scene_and_object(results, tmp_path):
+    """Contract: with `grid: region` the object's field has the voxels of the scene's, and its own plain fusion."""
+    fuse_object.run(
+        keyframes=results / "keyframes.json",
+        depth=sorted((results / "depth").iterdir()),
+        consistency=results / "consistency.zarr.zip",
+        support=results / "support.json",
+        scene=results / "scene.zarr.zip",
+        volume=tmp_path / "object.zarr.zip",
+        params=FuseObjectParams(grid="region", thickness_share=0.0),
+        job=Job(Progress("test"), HEADER, 1),
+    )
+    own, scene = read_volume(tmp_path / "object.zarr.zip"), read_volume(results / "scene.zarr.zip")
+    assert own.grid.shape == scene.grid.shape and own.grid.spacing == scene.grid.spacing
+    assert np.array_equal(own.grid.origin, scene.grid.origin) and np.array_equal(own.grid.axes, scene.grid.axes)
+    assert np.array_equal(own.seen, scene.seen)
 
 
 def test_mesh_is_the_sphere_closed(results, table):

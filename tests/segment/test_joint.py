@@ -11,26 +11,27 @@ from scipy import ndimage
 
 from threedfs.errors import UserError
 from threedfs.evaluate.masks import intersection_over_union
-from threedfs.geometry.grid import voxel_centres
+from threedfs.geometry.grid import cover_box, voxel_centres
 from threedfs.hull.gaps import fit_masks
 from threedfs.locate.height import height_above
 from threedfs.params.segment import SegmentParams
 from threedfs.params.volumetric_cut import VolumetricCutParams
 from threedfs.segment.energy import OBJECT
-from threedfs.segment.gather import GatherRule, gather_images, gather_voxels, picture_support
+from threedfs.segment.gather import GatherRule, box_of_grid, gather_images, gather_voxels, picture_support
 from threedfs.segment.initialise import UNDECIDED
 from threedfs.segment.joint import CutRule, segment_jointly
 from threedfs.segment.outline import draw_voxels
 from threedfs.segment.refine import RefineRule, refine_mask
 from threedfs.segment.source_mask import distort_mask
 from threedfs.segment.volumetric import VolumetricRule, cut_volume
+from threedfs.types import Box
 
 DEFAULTS = SegmentParams(color_components=3, color_pixels=3000, outer_height=2.0, outer_margin=3, silhouette_ramp=2.0)
 
 
 def rules(params: SegmentParams) -> tuple[GatherRule, CutRule]:
     """Return the rules of the topic from a stage's parameters."""
-    named = {"random_first": params.first_labels == "random", "by_mean": params.pair_edge == "mean"}
+    named = {"random_first": params.first_labels == "random"}
     named |= {"surface_links": params.links == "surface", "components": params.color_components}
     return tuple(
         kind(**{f.name: named[f.name] if f.name in named else getattr(params, f.name) for f in fields(kind)})
@@ -124,6 +125,46 @@ def test_printed_version_runs_and_finds_the_ball():
     scene, truth = make_scene()
     images, cut = segment(scene, printed)
     assert overlap(paint(images, cut), truth) > 0.75
+
+
+def test_first_carving_by_a_cut_keeps_what_random_masks_carve():
+    """After one round from random labels: masks of the labels carve most of the ball, those of a cut little."""
+    scene, _ = make_scene()
+    once = replace(DEFAULTS, first_labels="random", carve_tolerance=0.0, iterations=1, pair_edge="sum")
+    kept = {}
+    for choice in ("first_labels", "cut", "none"):
+        _, cut = segment(scene, replace(once, first_carving=choice))
+        kept[choice] = int((cut.voxels == OBJECT).sum())
+    assert kept["first_labels"] < 0.7 * kept["cut"] <= 0.7 * kept["none"]
+
+
+def test_region_is_the_box_or_all_of_the_grid():
+    """The grid holds what the box cuts off: less lies outside of it, and nothing inside the box does."""
+    scene, _ = make_scene()
+    small = replace(scene, box=Box(scene.box.axes, scene.box.low * 0.3, scene.box.high * 0.3))
+    shares = {}
+    for choice in ("box", "grid"):
+        gather, _ = rules(replace(DEFAULTS, roi=choice))
+        volume, bounds = gather_voxels(small, gather)
+        images = gather_images(small, volume, bounds, None, gather, np.random.default_rng(0))
+        shares[choice] = np.concatenate([evidence.outside for evidence in images.values()])
+    assert (shares["grid"] <= shares["box"]).all() and shares["grid"].sum() < shares["box"].sum()
+
+
+def test_the_box_of_a_grid_holds_its_voxels_to_their_faces():
+    grid = cover_box(Box(np.eye(3)[[1, 2, 0]], np.array([-1.0, 2.0, 0.5]), np.array([1.0, 3.0, 1.0])), 8)
+    box = box_of_grid(grid)
+    assert box.low == pytest.approx([-1, 2, 0.5]) and box.high == pytest.approx([1, 3, 1])
+
+
+def test_under_estimate_of_all_pieces_holds_more_than_the_object():
+    scene, _ = make_scene()
+    alone = replace(scene, located=replace(scene.located, voxels=scene.located.voxels & (scene.sdf < -0.9)))
+    inner = {}
+    for choice in ("object", "outer"):
+        gather, _ = rules(replace(DEFAULTS, inner_level=-0.5, inner_pieces=choice))
+        inner[choice] = gather_voxels(alone, gather)[1].inner
+    assert not (inner["object"] & ~inner["outer"]).any() and inner["outer"].sum() > inner["object"].sum()
 
 
 def test_same_seed_same_labels(ball):

@@ -60,8 +60,9 @@ def test_superpixels_leave_out_what_is_not_valid():
 
 def test_pair_weights_as_printed_and_by_mean():
     found = halves()
-    assert superpixel_weights(found, 2.0, by_mean=False)[0] == pytest.approx(np.exp(-12))
-    assert superpixel_weights(found, 2.0, by_mean=True)[0] == pytest.approx(np.exp(-1))
+    assert superpixel_weights(found, 2.0, pair_edge="sum")[0] == pytest.approx(np.exp(-12))
+    assert superpixel_weights(found, 2.0, pair_edge="one_side")[0] == pytest.approx(np.exp(-6))
+    assert superpixel_weights(found, 2.0, pair_edge="mean")[0] == pytest.approx(np.exp(-1))
 
 
 def test_trimap_decides_by_nine_tenths():

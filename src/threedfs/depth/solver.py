@@ -40,6 +40,7 @@ def optimise_depth(
     photometric_weight: float,
     coupling: float,
     coupling_decay: float,
+    coupling_reading: str = "product",
     median_size: int,
     newton_rate: float,
     smoothness: float,
@@ -82,7 +83,7 @@ def optimise_depth(
     Also beyond the paper: from half of the iterations on, smoothing gives way where the surface bends sharply
     (`release_bends`), which keeps the background from being drawn towards the object around its silhouette.
     """
-    schedule = coupling_schedule(coupling, coupling_decay, iterations)
+    schedule = coupling_schedule(coupling, coupling_decay, iterations, coupling_reading)
     fine = DepthData(cost_volume, confidence, measured_depth, measurement_weight, edge_weight)
     halved = fine_iterations < iterations and min(confidence.shape) >= _LEAST_SIDE
     data = halve_data(fine) if halved else fine

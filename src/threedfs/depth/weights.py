@@ -23,8 +23,17 @@ def smoothness_at(iteration: int, initial: float, growth: float) -> float:
     return initial * growth ** (iteration - 1)
 
 
-def coupling_schedule(initial: float, decay: float, iterations: int) -> np.ndarray:
+def coupling_schedule(initial: float, decay: float, iterations: int, reading: str = "product") -> np.ndarray:
     """Return the coupling theta after each of the iterations 1 .. n (Eq. 10), (n,) float64, positive.
+
+    Parameters
+    ----------
+    initial, decay : float
+        theta^(0) and beta.
+    iterations : int
+    reading : {"product", "linear"}
+        ``product`` is Eq. 10 as printed, each theta 1 - decay t times the one before; ``linear`` is 1 - decay t times
+        the first one.
 
     Raises
     ------
@@ -35,13 +44,16 @@ def coupling_schedule(initial: float, decay: float, iterations: int) -> np.ndarr
     --------
     >>> coupling_schedule(1.0, 0.1, 3).round(3)
     array([0.9  , 0.72 , 0.504])
+    >>> coupling_schedule(1.0, 0.1, 3, "linear").round(3)
+    array([0.9, 0.8, 0.7])
     """
     if decay * iterations >= 1:
         raise UserError(
             f"depth: expected decay * iterations < 1 so that the coupling of Eq. 10 stays positive, got "
             f"{decay} * {iterations} = {decay * iterations:.3g}; lower depth.coupling_decay or depth.iterations."
         )
-    return initial * np.cumprod(1 - decay * np.arange(1, iterations + 1))
+    factors = 1 - decay * np.arange(1, iterations + 1)
+    return initial * (factors if reading == "linear" else np.cumprod(factors))
 
 
 def photometric_confidence(min_cost: np.ndarray, falloff: float) -> np.ndarray:

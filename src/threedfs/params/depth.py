@@ -70,6 +70,13 @@ class DepthParams:
         minimum=0,
         maximum=1,
     )
+    coupling_reading: str = parameter(
+        "product",
+        "how Eq. 10 is read: its factors multiply up, as printed, or it is one factor times the first coupling, which "
+        "falls evenly and lets smoothing act",
+        equation="Eq. 10",
+        choices=("product", "linear"),
+    )
     median_size: int = parameter(
         3, "side of the median filter after the search, 1 for none", unit="px", minimum=1, maximum=5
     )

@@ -12,6 +12,13 @@ from threedfs.params.fusion import FusionSettings
 class FuseObjectParams(FusionSettings):
     """How the object is fused on its own grid."""
 
+    grid: str = parameter(
+        "object",
+        "what the grid covers: the box of the object, or the region of interest, with the very voxels of the scene's "
+        "grid, as in the paper, which has one grid",
+        equation="Sec. 3.4.1",
+        choices=("object", "region"),
+    )
     hidden_distance: float = parameter(
         2.0,
         "distance behind a view's surface from which the handicap of votes on voxels that the view does not see grows, "

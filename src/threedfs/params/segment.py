@@ -48,6 +48,12 @@ class SegmentParams:
         minimum=-1.0,
         maximum=1.0,
     )
+    inner_pieces: str = parameter(
+        "object",
+        "what the under-estimate is taken from: the object as found, or all of the over-estimate (paper)",
+        equation="Sec. 3.4.2",
+        choices=("object", "outer"),
+    )
     decided_share: float = parameter(
         0.9,
         "share of a superpixel's pixels outside the over-estimate, or inside the under-estimate, that fixes its label",
@@ -96,6 +102,13 @@ class SegmentParams:
         minimum=0.0,
         maximum=5.0,
     )
+    roi: str = parameter(
+        "box",
+        "what depth outside of which speaks for the background: the object's box, or all that the field's grid covers, "
+        "which with fuse_object.grid: region is the region of interest (paper)",
+        equation="Eq. 22",
+        choices=("box", "grid"),
+    )
     roi_weight: float = parameter(
         1.0,
         "weight of the depth outside the object's box (paper: 10, outside the region of interest)",
@@ -119,6 +132,13 @@ class SegmentParams:
     carve_weight: float = parameter(
         1.0, "weight of the carving by masks", symbol="lambda_carve", equation="Eq. 27", minimum=0.0
     )
+    first_carving: str = parameter(
+        "first_labels",
+        "masks that carve in the first round: those of the first labels; those of one cut of the images alone, from "
+        "which the labels start then; or none, so that averages begin with the second round",
+        equation="Eq. 27",
+        choices=("first_labels", "cut", "none"),
+    )
     carve_tolerance: float = parameter(
         0.1,
         "share of the views up to which a voxel may project outside the masks without being carved (paper: 0)",
@@ -130,9 +150,10 @@ class SegmentParams:
     )
     pair_edge: str = parameter(
         "mean",
-        "contour strength along a boundary: mean, times its length, or the printed sum",
+        "contour strength along a boundary: mean, times its length; the printed sum over the pixels of both sides; or "
+        "that over one side's, half of it",
         equation="Eq. 28",
-        choices=("mean", "sum"),
+        choices=("mean", "sum", "one_side"),
     )
     pair_falloff: float = parameter(2.0, "fall-off of that cost with the strength", equation="Eq. 28", minimum=0.0)
     voxel_pair_weight: float = parameter(

@@ -27,7 +27,7 @@ from threedfs.segment.outline import draw_voxels
 from threedfs.segment.pairwise import link_voxels, superpixel_weights
 from threedfs.segment.superpixels import Superpixels
 from threedfs.segment.table import TablePicture, match_table, picture_table
-from threedfs.types import Box, View
+from threedfs.types import Box, View, VoxelGrid
 
 _SURE_LEVEL = -0.5
 """Field of voxels that hide the support surface for certain."""
@@ -76,6 +76,7 @@ class GatherRule:
     outer_margin: int
     fill_outer: bool
     inner_level: float
+    inner_pieces: str
     decided_share: float
     random_first: bool
     empty_level: float
@@ -83,8 +84,9 @@ class GatherRule:
     silhouette_ramp: float
     table: bool
     table_reach: float
+    roi: str
     pair_weight: float
-    by_mean: bool
+    pair_edge: str
     pair_falloff: float
     surface_links: bool
     link_weight: float
@@ -104,13 +106,16 @@ class Bounds:
 def gather_voxels(scene: Scene, rule: GatherRule) -> tuple[VoxelEvidence, Bounds]:
     """Return the voxels' first labels, and what bounds the object.
 
-    Differs from the paper: the under-estimate lies within the component that is the object.
+    Differs from the paper: the under-estimate lies within the component that is the object, unless
+    `SegmentParams.inner_pieces` says otherwise.
     """
     located, grid = scene.located, scene.located.grid
     guess, height = located.voxels, located.height
     raised = located.least_height + rule.outer_height * grid.spacing
     outer = bound_object(scene.sdf, guess, height > raised, rule.outer_level, rule.outer_margin)
-    inner = outer & guess & (scene.sdf < rule.inner_level)
+    inner = outer & (scene.sdf < rule.inner_level)
+    if rule.inner_pieces == "object":
+        inner &= guess
     hides = guess & (scene.sdf < _SURE_LEVEL) & (height > located.least_height)
     normalised = normalised_height(height)
     fixed = fix_voxels(scene.sdf, normalised, empty_level=rule.empty_level, deepest=rule.deepest)
@@ -127,6 +132,12 @@ def picture_support(scene: Scene, bounds: Bounds, rule: GatherRule) -> TablePict
     around = scene.box.grow(rule.table_reach * scene.box.longest)
     solid = world_from_index(scene.located.grid, np.argwhere(bounds.hides))
     return picture_table(scene.images, scene.views, covered, scene.valid, scene.located.plane, solid, around)
+
+
+def box_of_grid(grid: VoxelGrid) -> Box:
+    """Return the box that a grid covers, from face to face."""
+    low = grid.axes @ grid.origin - grid.spacing / 2
+    return Box(grid.axes, low, low + grid.spacing * np.array(grid.shape))
 
 
 def pixels_at(box: Box, view: View, length: float) -> float:
@@ -169,7 +180,8 @@ def gather_images(
             guessed = rng.random(superpixels.count) < 0.5
         first = np.where(decided == UNDECIDED, np.where(guessed, OBJECT, BACKGROUND), decided).astype(np.uint8)
         points = backproject_map(view, scene.depth[name])
-        outside = np.isfinite(scene.depth[name]) & ~scene.box.contains(points)
+        region = scene.box if rule.roi == "box" else box_of_grid(scene.located.grid)
+        outside = np.isfinite(scene.depth[name]) & ~region.contains(points)
         pairs, weight = _link(scene, volume, name, points, rule)
         evidence[name] = ImageEvidence(
             view,
@@ -178,7 +190,7 @@ def gather_images(
             decided,
             first,
             superpixels.share(outside),
-            rule.pair_weight * superpixel_weights(superpixels, rule.pair_falloff, rule.by_mean),
+            rule.pair_weight * superpixel_weights(superpixels, rule.pair_falloff, rule.pair_edge),
             pairs,
             weight,
             pixels_at(scene.box, view, rule.silhouette_ramp * scene.located.grid.spacing),

@@ -36,6 +36,7 @@ class CutRule:
     sdf_weight: float
     scene_weight: float
     carve_weight: float
+    first_carving: str
     carve_tolerance: float
     voxel_pair_weight: float
     iterations: int
@@ -103,6 +104,8 @@ def segment_jointly(
     energies, swaps = [], []
     views = {name: evidence.view for name, evidence in images.items()}
     valid = {name: evidence.superpixels.index >= 0 for name, evidence in images.items()}
+    if volume is not None and rule.first_carving == "cut":
+        labels = _cut_images(images, labels, rule, rng, seed)
     for iteration in range(rule.iterations):
         of_images = nodes.split(labels)
         model = _learn_colors(images, of_images, rule, model, rng, seed)
@@ -116,8 +119,9 @@ def segment_jointly(
             drawn = draw_voxels(voxels == OBJECT, volume.grid, views)
             soft = {name: soften_silhouette(mask, images[name].silhouette_reach) for name, mask in drawn.items()}
             silhouettes.add(np.concatenate([images[name].superpixels.mean(share) for name, share in soft.items()]))
-            masks = {name: images[name].superpixels.paint(of_images[name] == OBJECT) for name in images}
-            carved.add(carve_unary(nodes.open_centres, views, masks, valid, rule.carve_tolerance))
+            if iteration > 0 or rule.first_carving != "none":
+                masks = {name: images[name].superpixels.paint(of_images[name] == OBJECT) for name in images}
+                carved.add(carve_unary(nodes.open_centres, views, masks, valid, rule.carve_tolerance))
         graph = nodes.connect(model, silhouettes.mean, carved.mean, rule)
         swapped = 0
         now = energy(graph, labels)
@@ -139,6 +143,19 @@ def segment_jointly(
         np.array(swaps, np.int64),
         model,
     )
+
+
+def _cut_images(images, labels, rule, rng, seed):
+    """Return the first labels (open nodes,) after the superpixels' have been cut once by the images alone.
+
+    Random masks leave no voxel uncarved; the cut's are the first that know something of the object.
+    """
+    alone = _Nodes(images, None, rule.voxel_pair_weight)
+    first = alone.first_labels()
+    graph = alone.connect(_learn_colors(images, alone.split(first), rule, None, rng, seed), None, None, rule)
+    for target in (BACKGROUND, OBJECT):
+        first = expand(graph, first, target)
+    return np.concatenate([first, labels[len(first) :]])
 
 
 def _name_unlinked(images: Mapping[str, ImageEvidence], note: Callable[[str], None]) -> None:
@@ -250,7 +267,8 @@ class _Nodes:
         unary[: len(images), :2], unary[: len(images), EMPTY] = images, np.inf
         voxels = unary[len(images) :]
         voxels[:] = rule.sdf_weight * sdf_unary(self._sdf) + rule.scene_weight * scene_unary(self._normalised)
-        voxels[:, OBJECT] += rule.carve_weight * carved
+        if carved is not None:
+            voxels[:, OBJECT] += rule.carve_weight * carved
         unary[self._never_empty, EMPTY] = np.inf
         return self._folded.with_costs(unary)
 

@@ -9,21 +9,22 @@ from threedfs.segment.superpixels import Superpixels
 from threedfs.types import VoxelGrid
 
 
-def superpixel_weights(superpixels: Superpixels, falloff: float, by_mean: bool) -> np.ndarray:
+def superpixel_weights(superpixels: Superpixels, falloff: float, pair_edge: str) -> np.ndarray:
     """Return the cost (P,) float32 of different labels across each boundary (Eq. 28).
 
-    Differs from the paper: with `by_mean` the fall-off is over the mean contour strength of the boundary, times its
-    length in units of a mean boundary; printed is the sum over its pixels, which leaves no cost on long boundaries.
+    Differs from the paper: with `mean` the fall-off is over the mean contour strength of the boundary, times its
+    length in units of a mean boundary; printed is the `sum` over its pixels, which leaves no cost on long boundaries.
+    Whether these are the pixels of both superpixels or of `one_side`, about half of them, the paper does not say.
 
     Parameters
     ----------
     superpixels : Superpixels
     falloff : float
         Paper: 2.
-    by_mean : bool
+    pair_edge : {"mean", "sum", "one_side"}
     """
-    if not by_mean:
-        return np.exp(-falloff * superpixels.edge_sum)
+    if pair_edge != "mean":
+        return np.exp(-falloff * (superpixels.edge_sum if pair_edge == "sum" else superpixels.edge_sum / 2))
     length = superpixels.boundary / superpixels.boundary.mean()
     return (length * np.exp(-falloff * superpixels.edge_sum / superpixels.boundary)).astype(np.float32)
 

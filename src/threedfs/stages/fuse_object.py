@@ -8,7 +8,7 @@ from threedfs.fusion.fuse import VoteRule, fuse_views, limit_clip_distance, star
 from threedfs.geometry.grid import cover_box
 from threedfs.io.consistency import read_consistency
 from threedfs.io.keyframes import read_keyframes
-from threedfs.io.volumes import Volume, read_support, write_volume
+from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.io.votes import read_votes
 from threedfs.job import Job
 from threedfs.params.fuse_object import FuseObjectParams
@@ -21,13 +21,17 @@ def run(
     depth: list[Path],
     consistency: Path,
     support: Path,
+    scene: Path | None,
     volume: Path,
     params: FuseObjectParams,
     job: Job,
 ) -> None:
-    """Lay the grid over the object's box, fuse, and write the volume."""
+    """Lay the grid over the object's box, fuse, and write the volume.
+
+    With `fuse_object.grid: region` the grid is that of the scene's volume, and `longest_side` says nothing.
+    """
     place = read_support(support)
-    grid = cover_box(place.box, params.longest_side)
+    grid = cover_box(place.box, params.longest_side) if scene is None else read_volume(scene).grid
     clip_distance = limit_clip_distance(
         params.clip_distance, place.figures["thickness"], params.thickness_share, grid.spacing
     )

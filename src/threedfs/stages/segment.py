@@ -74,7 +74,6 @@ def run(
         GatherRule,
         params,
         random_first=params.first_labels == "random",
-        by_mean=params.pair_edge == "mean",
         surface_links=params.links == "surface",
     )
     job.progress.note(f"{cut}: the {params.field} field, {len(views)} keyframes")
