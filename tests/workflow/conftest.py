@@ -41,7 +41,7 @@ SIGNATURES = {
         "clearance segmentation",
     ),
     "locate_object": ("volume support keyframes semidense", "located", "field"),
-    "fuse_object": ("keyframes depth consistency support", "volume", ""),
+    "fuse_object": ("keyframes depth consistency support scene", "volume", ""),
     "fuse_baseline": ("keyframes depth support", "volume", "fusion"),
     "densify": ("crops keyframes poses points support stereo", "cloud", "cuda"),
     "deform": ("field support cloud", "volume", "clearance noise_clearance"),
