@@ -5,14 +5,12 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor
-from queue import Full, Queue
-from threading import Event, Thread
 from typing import TypeVar
 
 Item = TypeVar("Item")
 Made = TypeVar("Made")
 
-_ITEM, _FAULT, _END = range(3)
+_END = object()
 
 
 def read_ahead(items: Iterable[Item], *, threads: int, count: int = 4) -> Iterator[Item]:
@@ -36,41 +34,15 @@ def read_ahead(items: Iterable[Item], *, threads: int, count: int = 4) -> Iterat
     if threads < 2:
         yield from items
         return
-    ready: Queue = Queue(count)
-    given_up = Event()
-
-    def hand(kind: int, value: object) -> None:
-        while not given_up.is_set():
-            try:
-                ready.put((kind, value), timeout=0.1)
-                return
-            except Full:
-                pass
-
-    def make() -> None:
+    left = iter(items)
+    with ThreadPoolExecutor(1) as pool:
         try:
-            for item in items:
-                hand(_ITEM, item)
-                if given_up.is_set():
-                    return
-        except BaseException as fault:  # raised where the items are used
-            hand(_FAULT, fault)
-        else:
-            hand(_END, None)
-
-    maker = Thread(target=make, daemon=True)
-    maker.start()
-    try:
-        while True:
-            kind, value = ready.get()
-            if kind == _END:
-                return
-            if kind == _FAULT:
-                raise value
-            yield value
-    finally:
-        given_up.set()
-        maker.join()
+            ready = deque(pool.submit(next, left, _END) for _ in range(count))
+            while (item := ready.popleft().result()) is not _END:
+                ready.append(pool.submit(next, left, _END))
+                yield item
+        finally:
+            pool.shutdown(cancel_futures=True)
 
 
 def map_ahead(make: Callable[[Item], Made], items: Iterable[Item], *, threads: int) -> Iterator[Made]:

@@ -118,6 +118,13 @@ def run_apart(folder: Path, spawn, threads: int) -> subprocess.Popen:
     return spawn(PROGRAM.format(tests=str(Path(__file__).parent), folder=str(folder), threads=threads))
 
 
+def is_alive(process):
+    try:
+        return ") Z " not in Path(f"/proc/{process}/stat").read_text()
+    except (FileNotFoundError, ProcessLookupError):  # the latter if it goes while its file is open
+        return False
+
+
 def wait_for(condition, process):
     """Wait until a condition holds while a process runs."""
     end = time.monotonic() + 60
@@ -187,7 +194,7 @@ def test_killed_job_goes_on_where_it_was_and_leaves_no_worker(folder, edit, spaw
     process.communicate()
     worker = int((folder / "at-photo-b").read_text())
     end = time.monotonic() + 20
-    while Path(f"/proc/{worker}").is_dir() and ") Z " not in Path(f"/proc/{worker}/stat").read_text():
+    while is_alive(worker):
         assert time.monotonic() < end, "the worker outlived the job"
         time.sleep(0.01)
     (folder / "slow").unlink()

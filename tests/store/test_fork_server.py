@@ -1,6 +1,7 @@
 """Exact: a script that is handed over ends as it would have by itself; nothing outlives who asked for it."""
 
 import os
+import selectors
 import signal
 import socket
 import subprocess
@@ -44,7 +45,7 @@ def is_alive(process):
     try:
         with open(f"/proc/{process}/stat", encoding="ascii") as file:
             return file.read().rpartition(")")[2].split()[0] != "Z"
-    except FileNotFoundError:
+    except (FileNotFoundError, ProcessLookupError):  # the latter if it goes while its file is open
         return False
 
 
@@ -179,6 +180,17 @@ def test_other_users_are_refused(monkeypatch):
     there.close()
 
 
+def test_streams_of_an_order_that_cannot_be_read_are_closed():
+    here, there = socket.socketpair()
+    before = len(os.listdir("/proc/self/fd"))
+    socket.send_fds(there, [b"\n"], [1, 2])
+    there.sendall(b"not json\n")
+    assert fork_server._receive(here) is None
+    assert len(os.listdir("/proc/self/fd")) == before
+    here.close()
+    there.close()
+
+
 @pytest.mark.parametrize("sent", [b"", b"not json\n", b"{}\n", b'{"argv": 1}\n'])
 def test_junk_does_no_harm(head, ask, sent):
     with socket.socket(socket.AF_UNIX) as client:
@@ -200,3 +212,27 @@ print(numba.config.NUMBA_NUM_THREADS, numba.config.CACHE_DIR)
     threads, folder = ask(head[1], body).communicate(timeout=60)[0].split()
     assert threads == "3"
     assert folder.startswith(str(tmp_path / "store/kernels"))
+
+
+@pytest.mark.parametrize("first", [0, 1])
+def test_an_end_and_a_loss_at_once_are_one_end(first):
+    """Exact: whichever of a fork's two events comes first, it is reaped once, and nothing else is killed."""
+    here, there = socket.socketpair()
+    process = os.fork()
+    if process == 0:
+        os._exit(7)
+    ending = os.pidfd_open(process)
+    with selectors.DefaultSelector() as waiting:
+        fork = fork_server._Fork(process, ending, here)
+        for file in (ending, here):
+            waiting.register(file, selectors.EVENT_READ, fork)
+        there.close()
+        wait_until(lambda: len(waiting.select(0)) == 2)
+        both = sorted((key for key, _ in waiting.select(0)), key=lambda key: (key.fd == ending) == bool(first))
+        for key in both:
+            if not key.data.ended:
+                fork_server._attend(key.data, key.fd, waiting)
+        assert fork.ended
+        assert not waiting.get_map()
+    with pytest.raises(ChildProcessError):
+        os.waitpid(process, 0)

@@ -9,9 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from threedfs.errors import UserError
-from threedfs.fusion.hard_maximum import HardMaximum
 from threedfs.fusion.softmax import SoftMaximum
-from threedfs.fusion.weighted_average import WeightedAverage
+from threedfs.fusion.view_fusion import ViewFusion
 from threedfs.types import VoxelGrid
 
 
@@ -45,16 +44,14 @@ def start_fusion(
     )
 
 
-def fuse_views(
-    votes: Iterable[tuple], fused: SoftMaximum | HardMaximum | WeightedAverage
-) -> tuple[np.ndarray, np.ndarray]:
+def fuse_views(votes: Iterable[tuple], fused: ViewFusion) -> tuple[np.ndarray, np.ndarray]:
     """Fuse the depth maps of all views (3.3.1); never more than a few are held.
 
     Parameters
     ----------
     votes : iterable of tuple
-        Of each view what the fusion's `add` takes: the view, its depth map, and more for the soft maximum.
-    fused : SoftMaximum, HardMaximum or WeightedAverage
+        Of each view what the fusion's `weigh` takes: the view, its depth map, and more for the soft maximum.
+    fused : ViewFusion
 
     Returns
     -------
@@ -66,11 +63,7 @@ def fuse_views(
     UserError
         If no view sees any voxel.
     """
-    if isinstance(fused, SoftMaximum):
-        fused.add_all(votes)
-    else:
-        for vote in votes:
-            fused.add(*vote)
+    fused.add_all(votes)
     sdf, seen = fused.result()
     if not seen.any():
         raise UserError(

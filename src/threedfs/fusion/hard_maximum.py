@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
-import numba
 import numpy as np
 from numba import njit, prange
 
 from threedfs.checks import check_shape
 from threedfs.fusion.softmax import UNSEEN
+from threedfs.fusion.view_fusion import ViewFusion
 from threedfs.fusion.view_sdf import invert_depth, measure_voxel, relate
 from threedfs.types import View, VoxelGrid
 
 
-class HardMaximum:
+class HardMaximum(ViewFusion):
     """Fuses the signed distances of views into their maximum, holding one view at a time.
 
     Right where all depth maps are; one view whose surface lies too far back carves the object away.
@@ -34,14 +35,13 @@ class HardMaximum:
     """
 
     def __init__(self, grid: VoxelGrid, clip_distance: float, *, discontinuity: float, threads: int = 1) -> None:
-        self.grid = grid
+        super().__init__(grid, threads)
         self._most = np.full(grid.shape, -np.inf, np.float32)
         self._seen = np.zeros(grid.shape, np.uint8)
         self._settings = (float(clip_distance), float(discontinuity))
-        self._threads = threads
 
-    def add(self, view: View, depth: np.ndarray) -> None:
-        """Let one view vote on every voxel it sees; depth (H, W), NaN where missing.
+    def weigh(self, view: View, depth: np.ndarray) -> tuple:
+        """Return what a view with a depth map (H, W), NaN where missing, has to say on every voxel it sees.
 
         Raises
         ------
@@ -49,8 +49,11 @@ class HardMaximum:
             If the map has not the shape of the view's images.
         """
         check_shape(depth, view.camera.shape, f"depth of view {view.name}")
-        numba.set_num_threads(max(1, min(self._threads, numba.config.NUMBA_NUM_THREADS)))
-        _raise_to_view(self._most, self._seen, relate(self.grid, view), invert_depth(depth), *self._settings)
+        return relate(self.grid, view), invert_depth(depth)
+
+    def count(self, *ballot: Any) -> None:
+        """Raise the field to the votes of one view."""
+        _raise_to_view(self._most, self._seen, *ballot, *self._settings)
 
     def result(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the field and the number of views that vote, as `SoftMaximum.result`."""

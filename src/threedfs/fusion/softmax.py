@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from typing import Any
 
-import numba
 import numpy as np
 from numba import njit, prange
 from scipy.ndimage import gaussian_filter
 
 from threedfs.checks import check_shape
+from threedfs.fusion.view_fusion import ViewFusion
 from threedfs.fusion.view_sdf import invert_depth, measure_voxel, relate
 from threedfs.geometry.projection import normals_from_depth, pixel_grid
-from threedfs.read_ahead import map_ahead
 from threedfs.types import Camera, View, VoxelGrid
 
 UNSEEN = 1.0
@@ -27,7 +26,7 @@ _NORMAL_SMOOTHING = 2.0
 """Standard deviation, in pixels, of the smoothing of depth before normals are taken."""
 
 
-class SoftMaximum:
+class SoftMaximum(ViewFusion):
     """Fuses the signed distances of views into one field on a grid, holding one view at a time.
 
     Differs from the paper, where confidence is given: a vote of trust c enters Eq. 15 as
@@ -86,7 +85,7 @@ class SoftMaximum:
         trust_blur: float = 0.0,
         threads: int = 1,
     ) -> None:
-        self.grid = grid
+        super().__init__(grid, threads)
         self._weighted = np.zeros(grid.shape)
         self._weight = np.zeros(grid.shape)
         self._seen = np.zeros(grid.shape, np.uint8)
@@ -96,16 +95,15 @@ class SoftMaximum:
         self._hidden_from = min(1.0, hidden_distance / clip_distance)
         self._facing = facing
         self._trust_blur = trust_blur
-        self._threads = threads
 
-    def add(
+    def weigh(
         self,
         view: View,
         depth: np.ndarray,
         confidence: np.ndarray | None = None,
         free_depth: np.ndarray | None = None,
-    ) -> None:
-        """Let one view vote on every voxel it sees.
+    ) -> tuple:
+        """Return what a view has to say on every voxel it sees; changes nothing.
 
         Voxels behind the camera, outside the image or at a pixel without depth get no vote from it.
 
@@ -124,27 +122,6 @@ class SoftMaximum:
         UserError
             If a map has not the shape of the view's images.
         """
-        self._vote(self._weigh(view, depth, confidence, free_depth))
-
-    def add_all(self, votes: Iterable[tuple]) -> None:
-        """Let views vote one after the other; what concerns one view alone is worked out ahead, by other threads.
-
-        Parameters
-        ----------
-        votes : iterable of tuple
-            Of each view what `add` takes.
-        """
-        for ballot in map_ahead(lambda vote: self._weigh(*vote), votes, threads=self._threads):
-            self._vote(ballot)
-
-    def _weigh(
-        self,
-        view: View,
-        depth: np.ndarray,
-        confidence: np.ndarray | None = None,
-        free_depth: np.ndarray | None = None,
-    ) -> tuple:
-        """Return what `_add_view` takes of a view."""
         shape = view.camera.shape
         maps = {"depth": depth, "confidence": confidence, "free depth": free_depth}
         for name, values in maps.items():
@@ -156,8 +133,8 @@ class SoftMaximum:
         free = np.zeros(shape, np.float32) if free_depth is None else free_depth.astype(np.float32)
         return relate(self.grid, view), invert_depth(depth), handicap, free, hidden
 
-    def _vote(self, ballot: tuple) -> None:
-        numba.set_num_threads(max(1, min(self._threads, numba.config.NUMBA_NUM_THREADS)))
+    def count(self, *ballot: Any) -> None:
+        """Add the votes of one view to the sums of Eq. 15."""
         _add_view(self._weighted, self._weight, self._seen, *ballot, self._hidden_from, *self._settings)
 
     def add_field(self, field: np.ndarray, trust: float | np.ndarray) -> None:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
-import numba
 import numpy as np
 from numba import njit, prange
 
 from threedfs.checks import check_shape
 from threedfs.fusion.softmax import UNSEEN, facing_cosine
+from threedfs.fusion.view_fusion import ViewFusion
 from threedfs.fusion.view_sdf import invert_depth, measure_voxel, relate
 from threedfs.types import View, VoxelGrid
 
@@ -17,7 +18,7 @@ _LEAST_WEIGHT = 0.05
 """Of a vote whose surface is seen edge on: it counts where there is no other."""
 
 
-class WeightedAverage:
+class WeightedAverage(ViewFusion):
     """Fuses truncated signed distances of views into their weighted mean, holding one view at a time.
 
     A view says nothing of a voxel farther behind its surface than the truncation; in front of it votes are clipped.
@@ -43,15 +44,14 @@ class WeightedAverage:
     """
 
     def __init__(self, grid: VoxelGrid, truncation: float, *, discontinuity: float, threads: int = 1) -> None:
-        self.grid = grid
+        super().__init__(grid, threads)
         self._weighted = np.zeros(grid.shape)
         self._weight = np.zeros(grid.shape)
         self._seen = np.zeros(grid.shape, np.uint8)
         self._settings = (float(truncation), float(discontinuity))
-        self._threads = threads
 
-    def add(self, view: View, depth: np.ndarray) -> None:
-        """Let one view vote on every voxel it sees; depth (H, W), NaN where missing.
+    def weigh(self, view: View, depth: np.ndarray) -> tuple:
+        """Return what a view with a depth map (H, W), NaN where missing, has to say on every voxel it sees.
 
         Raises
         ------
@@ -60,16 +60,11 @@ class WeightedAverage:
         """
         check_shape(depth, view.camera.shape, f"depth of view {view.name}")
         facing = np.maximum(facing_cosine(view.camera, depth), _LEAST_WEIGHT)
-        numba.set_num_threads(max(1, min(self._threads, numba.config.NUMBA_NUM_THREADS)))
-        _average_view(
-            self._weighted,
-            self._weight,
-            self._seen,
-            relate(self.grid, view),
-            invert_depth(depth),
-            facing,
-            *self._settings,
-        )
+        return relate(self.grid, view), invert_depth(depth), facing
+
+    def count(self, *ballot: Any) -> None:
+        """Add the votes of one view to the weighted sums."""
+        _average_view(self._weighted, self._weight, self._seen, *ballot, *self._settings)
 
     def result(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the field in units of the truncation, and the views that look towards a voxel."""

@@ -5,9 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy import sparse
 from scipy.ndimage import find_objects
-from scipy.sparse.linalg import splu
 
-from threedfs.matting.laplacian import matting_laplacian
+from threedfs.matting.laplacian import factorise, matting_laplacian
 from threedfs.matting.trimap import Trimap, trimap_around
 
 BAND = 2.0
@@ -58,7 +57,6 @@ def solve_opacity(image: np.ndarray, mask: np.ndarray, trimap: Trimap, epsilon: 
     unknown, held = trimap.unknown[window], opacity[window].reshape(-1)
     rows = matting_laplacian(image[window], epsilon, unknown)[unknown.reshape(-1)]
     matrix = rows[:, np.flatnonzero(unknown)] + trust * sparse.eye_array(np.count_nonzero(unknown))
-    factors = splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    solved = factors.solve(trust * mask[window][unknown] - rows @ held)
+    solved = factorise(matrix).solve(trust * mask[window][unknown] - rows @ held)
     opacity[window][unknown] = np.clip(solved, 0, 1)
     return opacity

@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 from scipy.cluster.vq import kmeans2
-from scipy.sparse.linalg import LinearOperator, eigsh, splu
+from scipy.sparse.linalg import LinearOperator, eigsh
+
+from threedfs.matting.laplacian import factorise
 
 _SHIFT = 1e-8
 """What is added to the Laplacian's diagonal, so that it can be solved with; its smallest eigenvalue is zero."""
@@ -56,8 +58,7 @@ def smallest_eigenvectors(
     By Lanczos iterations on the inverse of the Laplacian, from a factorisation of it.
     """
     size = laplacian.shape[0]
-    shifted = (laplacian + _SHIFT * sparse.eye_array(size)).tocsc()
-    factors = splu(shifted, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    factors = factorise(laplacian + _SHIFT * sparse.eye_array(size))
     inverse = LinearOperator((size, size), matvec=factors.solve, dtype=np.float64)
     start = rng.standard_normal(size)
     values, vectors = eigsh(laplacian, min(count, size - 1), sigma=-_SHIFT, OPinv=inverse, v0=start)

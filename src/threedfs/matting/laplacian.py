@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 from scipy import sparse
+from scipy.sparse.linalg import SuperLU, splu
 
 _SIDE = 3
 """Pixels along a window."""
@@ -49,6 +50,11 @@ def matting_laplacian(image: np.ndarray, epsilon: float, within: np.ndarray | No
         first, second = np.broadcast_arrays(pixels[:, :, None], pixels[:, None, :])
         total = total + sparse.coo_array((entries.reshape(-1), (first.reshape(-1), second.reshape(-1))), size).tocsr()
     return ((total + total.T) / 2).tocsr()  # sums were taken in another order on the other side of the diagonal
+
+
+def factorise(matrix: sparse.sparray) -> SuperLU:
+    """Return the factors of a symmetric matrix (N, N) of pixels, whose `solve` takes a right-hand side (N,)."""
+    return splu(matrix.tocsc(), permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
 def _window_entries(colors: np.ndarray, epsilon: float) -> np.ndarray:

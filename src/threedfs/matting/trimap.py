@@ -10,7 +10,7 @@ from scipy import ndimage
 
 from threedfs.errors import UserError
 from threedfs.locate.find import Located
-from threedfs.segment.initialise import bound_object
+from threedfs.segment.gather import over_estimate
 from threedfs.segment.outline import depth_inside, draw_voxels
 from threedfs.types import View
 
@@ -67,9 +67,7 @@ def draw_trimaps(
     UserError
         If nothing of the object is known for certain.
     """
-    raised = located.least_height + rule.outer_height * located.grid.spacing
-    high = located.height > raised
-    outer = bound_object(sdf, located.voxels, high, rule.outer_level, rule.outer_margin)
+    outer = over_estimate(located, sdf, rule)
     inner = outer & located.voxels & (sdf < rule.inner_level)
     if not inner.any():
         deepest = f"{sdf[located.voxels].min():.2f}" if located.voxels.any() else "none"

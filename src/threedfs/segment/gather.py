@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Protocol
 
 import cv2
 import numpy as np
@@ -103,6 +104,28 @@ class Bounds:
     hides: np.ndarray
 
 
+class OuterRule(Protocol):
+    """What bounds the object from outside; `SegmentParams` says more of each value."""
+
+    outer_level: float
+    outer_height: float
+    outer_margin: int
+
+
+def over_estimate(located: Located, sdf: np.ndarray, rule: OuterRule) -> np.ndarray:
+    """Return what bounds the object from outside (3.4.2), (nx, ny, nz) bool, as `bound_object`.
+
+    Parameters
+    ----------
+    located : Located
+    sdf : (nx, ny, nz) float32
+        The field that the object was located in.
+    rule : OuterRule
+    """
+    raised = located.least_height + rule.outer_height * located.grid.spacing
+    return bound_object(sdf, located.voxels, located.height > raised, rule.outer_level, rule.outer_margin)
+
+
 def gather_voxels(scene: Scene, rule: GatherRule) -> tuple[VoxelEvidence, Bounds]:
     """Return the voxels' first labels, and what bounds the object.
 
@@ -111,8 +134,7 @@ def gather_voxels(scene: Scene, rule: GatherRule) -> tuple[VoxelEvidence, Bounds
     """
     located, grid = scene.located, scene.located.grid
     guess, height = located.voxels, located.height
-    raised = located.least_height + rule.outer_height * grid.spacing
-    outer = bound_object(scene.sdf, guess, height > raised, rule.outer_level, rule.outer_margin)
+    outer = over_estimate(located, scene.sdf, rule)
     inner = outer & (scene.sdf < rule.inner_level)
     if rule.inner_pieces == "object":
         inner &= guess

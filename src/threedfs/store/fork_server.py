@@ -109,53 +109,75 @@ def hand_over() -> None:
     sys.exit(code if code >= 0 else 128 - code)
 
 
-def serve(address: str) -> Order | None:
+@dataclass(eq=False)
+class _Fork:
+    """A script at work: its process, the descriptor that can be read when that has ended, and who asked for it."""
+
+    process: int
+    ending: int
+    asking: socket.socket
+    ended: bool = False
+
+
+def serve(address: str) -> Order:
     """Fork for every script that is handed over, and tell each how its fork has ended.
 
     Returns
     -------
-    Order or None
+    Order
         In a fork: what to run. The server itself ends with its parent, and does not return.
     """
     with socket.socket(socket.AF_UNIX) as door, selectors.DefaultSelector() as waiting:
         door.bind(f"\0{address}")
         door.listen()
         waiting.register(door, selectors.EVENT_READ)
-        forks: dict[int, tuple[int, socket.socket]] = {}  # by descriptor of the process: its number, and who asked
         while True:
             for key, _ in waiting.select():
                 if key.fileobj is door:
-                    asking = door.accept()[0]
-                    received = _receive(asking)
-                    if received is None:
-                        asking.close()
-                        continue
-                    order, streams = received
-                    child = os.fork()
-                    if child == 0:
-                        for _, other in forks.values():
-                            other.close()
-                        asking.close()
-                        _take_over(order, streams)
+                    order = _admit(door.accept()[0], waiting)
+                    if order is not None:
                         return order
-                    for stream in streams:
-                        os.close(stream)
-                    ending = os.pidfd_open(child)  # can be read when the fork has ended; not inherited
-                    forks[ending] = child, asking
-                    waiting.register(ending, selectors.EVENT_READ)
-                    waiting.register(asking, selectors.EVENT_READ, child)
-                    _tell(asking, "forked")
-                elif key.data is not None:  # who asked is gone
-                    waiting.unregister(key.fileobj)
-                    os.kill(key.data, signal.SIGKILL)
-                else:
-                    child, asking = forks.pop(key.fd)
-                    waiting.unregister(key.fd)
-                    os.close(key.fd)
-                    _tell(asking, str(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])))
-                    with contextlib.suppress(KeyError):
-                        waiting.unregister(asking)
-                    asking.close()
+                elif not key.data.ended:  # its other event may have come first
+                    _attend(key.data, key.fd, waiting)
+
+
+def _admit(asking: socket.socket, waiting: selectors.BaseSelector) -> Order | None:
+    """Fork for a script, if it can be served; return what to run in the fork, and None in the server."""
+    received = _receive(asking)
+    if received is None:
+        asking.close()
+        return None
+    order, streams = received
+    process = os.fork()
+    if process == 0:
+        for other in {key.data for key in waiting.get_map().values() if key.data is not None}:
+            other.asking.close()
+            os.close(other.ending)
+        asking.close()
+        _take_over(order, streams)
+        return order
+    for stream in streams:
+        os.close(stream)
+    fork = _Fork(process, os.pidfd_open(process), asking)
+    waiting.register(fork.ending, selectors.EVENT_READ, fork)
+    waiting.register(asking, selectors.EVENT_READ, fork)
+    _tell(asking, "forked")
+    return None
+
+
+def _attend(fork: _Fork, descriptor: int, waiting: selectors.BaseSelector) -> None:
+    """Kill a fork that nobody waits for any more; tell of one that has ended."""
+    if descriptor != fork.ending:
+        waiting.unregister(fork.asking)
+        signal.pidfd_send_signal(fork.ending, signal.SIGKILL)
+        return
+    fork.ended = True
+    _tell(fork.asking, str(os.waitstatus_to_exitcode(os.waitpid(fork.process, 0)[1])))
+    with contextlib.suppress(KeyError):  # who asked was gone before
+        waiting.unregister(fork.asking)
+    waiting.unregister(fork.ending)
+    fork.asking.close()
+    os.close(fork.ending)
 
 
 def _receive(asking: socket.socket) -> tuple[Order, list[int]] | None:
@@ -163,13 +185,14 @@ def _receive(asking: socket.socket) -> tuple[Order, list[int]] | None:
     if not _is_own(asking):
         return None
     asking.settimeout(_PATIENCE)
+    streams: list[int] = []
     try:
         streams = socket.recv_fds(asking, 1, 2)[1]
         order = Order(**json.loads(asking.makefile().readline()))
+        if len(streams) == 2 and order.python == sys.executable:
+            return order, streams
     except (OSError, ValueError, TypeError):
-        return None
-    if len(streams) == 2 and order.python == sys.executable:
-        return order, streams
+        pass
     for stream in streams:
         os.close(stream)
     return None
@@ -221,9 +244,8 @@ def main(address: str, parent: str) -> None:
         signal.signal(number, signal.SIG_IGN)  # the parent decides
     _import_libraries()
     order = serve(address)
-    if order:
-        sys.path[0] = os.path.dirname(order.argv[0])
-        runpy.run_path(order.argv[0], run_name="__main__")
+    sys.path[0] = os.path.dirname(order.argv[0])
+    runpy.run_path(order.argv[0], run_name="__main__")
 
 
 if __name__ == "__main__":
