@@ -111,7 +111,7 @@ class SegmentParams:
     )
     roi_weight: float = parameter(
         1.0,
-        "weight of the depth outside the object's box (paper: 10, outside the region of interest)",
+        "weight of the depth outside what roi names (paper: 10)",
         symbol="lambda_roi",
         equation="Eq. 22",
         minimum=0.0,
