@@ -1,11 +1,15 @@
 """Kill jobs and runs of the workflow at random, and see that nothing damaged is left or believed.
 
-The stages are the stand-ins of the tests, the store is the real one. A run is started, one of its jobs or the run
-itself is sent a signal at a random moment, and it is started again, until it ends well; then all begins anew.
-After every kill: no process of the run is left after five seconds, and store and results hold nothing damaged. After
-every run that ended well: its results have the bytes of one that nobody disturbed.
+A run is started, one of its jobs or the run itself is sent a signal at a random moment, and it is started again, until
+it ends well; then all begins anew. After every kill: no process of the run is left after five seconds, and store and
+results hold nothing damaged. After every run that ended well: its results have the bytes of one that nobody disturbed.
 
-Run as ``python benchmarks/kills.py --jobs 180 --runs 50`` in the project's folder.
+The store is the real one. The stages are the stand-ins of the tests; half of the runs fork their jobs, half start them
+one by one. With `--real` the stages are the real ones, in the quick preset, and every second time that all begins anew
+their kernels are compiled anew too.
+
+    python benchmarks/kills.py --jobs 180 --runs 50
+    python benchmarks/kills.py --jobs 14 --runs 6 --real
 """
 
 from __future__ import annotations
@@ -32,6 +36,15 @@ SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
 PATIENCE = 5.0
 LATEST = 0.4  # of the time that a run takes; each goes on where the one before it was, so every part of it is hit
 MARK = "THREEDFS_KILLS"
+SEQUENCES = """\
+dataset: kills
+methods: [fused_sdf]
+sequences:
+  sample:
+    source: {sample}/video.mp4
+    cameras: {sample}/cameras.json
+    truth: {{masks: {sample}/masks, cameras: {sample}/cameras.json, mesh: {sample}/mesh.ply}}
+"""
 
 
 def main() -> int:
@@ -42,21 +55,22 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--seconds", type=float, default=float("inf"), help="stop after so long")
     parser.add_argument("--target", action="append", default=[], help="a file that each run makes (all)")
+    parser.add_argument("--real", action="store_true", help="the real stages")
     arguments = parser.parse_args()
     draw, begun = random.Random(arguments.seed), time.monotonic()
     targets = ["job"] * arguments.jobs + ["run"] * arguments.runs
     draw.shuffle(targets)
     counts, faults = Counter(), []
     with tempfile.TemporaryDirectory(prefix="threedfs-kills-") as folder:
-        project = _make_project(Path(folder) / "project")
-        before = time.monotonic()
-        project.run(*arguments.target)
-        length, right = time.monotonic() - before, project.artifacts()
+        project = (_make_real_project if arguments.real else _make_project)(Path(folder) / "project")
+        length, right = _run_undisturbed(project, arguments.target)
         print(f"a run takes {length:.1f} s and makes {len(right)} files", flush=True)
-        shutil.rmtree(project.folder / "results")
+        _begin_anew(project, kernels_too=False)
         while targets and time.monotonic() - begun < arguments.seconds:
             how = draw.choice(SIGNALS)
-            hit, status = _disturb(project, arguments.target, targets[-1], how, draw.uniform(0.05, LATEST) * length)
+            environment = project.forking if arguments.real or draw.random() < 0.5 else project.environment
+            delay = draw.uniform(0.05, LATEST) * length
+            hit, status = _disturb(project, environment, arguments.target, targets[-1], how, delay)
             if hit:
                 counts[f"{targets.pop()} {how.name}"] += 1
                 print(f"{hit}, status {status}, {len(targets)} to go", flush=True)
@@ -64,11 +78,11 @@ def main() -> int:
             if status == 0:
                 counts["runs that ended well"] += 1
                 faults += [f"{hit}: {name} differs" for name in _compare(project.artifacts(), right)]
-                shutil.rmtree(project.folder / "results")
+                _begin_anew(project, kernels_too=counts["runs that ended well"] % 2 == 0)
         if (project.folder / "results").is_dir():
-            project.run(*arguments.target)
+            _, files = _run_undisturbed(project, arguments.target)
             counts["runs that ended well"] += 1
-            faults += [f"{name} differs" for name in _compare(project.artifacts(), right)]
+            faults += [f"{name} differs" for name in _compare(files, right)]
     for name, count in sorted(counts.items()):
         print(f"{name:24}{count:>5}")
     print(f"{'seconds':24}{time.monotonic() - begun:>5.0f}")
@@ -76,14 +90,34 @@ def main() -> int:
     return 1 if faults else 0
 
 
+def _run_undisturbed(project, files: list[str]) -> tuple[float, dict[str, bytes]]:
+    """Return the seconds of a run and what it made."""
+    before = time.monotonic()
+    project.run(*files)
+    return time.monotonic() - before, project.artifacts()
+
+
+def _begin_anew(project, kernels_too: bool) -> None:
+    """Take away results and store; leave the kernels there unless told."""
+    kernels, aside = project.folder / "results/.store/kernels", project.folder / "kernels"
+    if kernels.is_dir() and not kernels_too:
+        kernels.rename(aside)
+    shutil.rmtree(project.folder / "results")
+    if aside.is_dir():
+        kernels.parent.mkdir(parents=True)
+        aside.rename(kernels)
+
+
 def _compare(found: dict[str, bytes], right: dict[str, bytes]) -> list[str]:
     """Return the names of files that are not the same, or are in one only."""
     return sorted(name for name in {*found, *right} if found.get(name) != right.get(name))
 
 
-def _disturb(project, files: list[str], target: str, how: signal.Signals, delay: float) -> tuple[str, int]:
+def _disturb(
+    project, environment: dict[str, str], files: list[str], target: str, how: signal.Signals, delay: float
+) -> tuple[str, int]:
     """Start a run and send a signal; return whom it was sent to (empty: it had ended before), and the exit status."""
-    environment = {**project.environment, MARK: str(os.getpid()), "STUB_PAUSE": "0.02"}
+    environment = {**environment, MARK: str(os.getpid()), "STUB_PAUSE": "0.02"}
     quiet = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     running = subprocess.Popen(
         [*project.command, *files], cwd=project.folder, env=environment, start_new_session=True, **quiet
@@ -139,11 +173,40 @@ def _list_left() -> list[int]:
 
 def _make_project(folder: Path):
     """Copy the project, with stand-ins for its stages."""
+    return _load_stand_ins().make_project(folder)
+
+
+def _make_real_project(folder: Path):
+    """Make a folder in which the project's own workflow reconstructs the sample, in small."""
+
+    class RealProject(_load_stand_ins().Project):
+        """A folder whose runs are those of the project itself."""
+
+        @property
+        def command(self) -> list[str]:
+            program, *options = super().command
+            presets = ["sequences.yaml", str(ROOT / "config/presets/quick.yaml")]
+            return [program, "--snakefile", str(ROOT / "Snakefile"), "--configfile", *presets, *options]
+
+        @property
+        def environment(self) -> dict[str, str]:
+            return self.forking
+
+        @property
+        def forking(self) -> dict[str, str]:
+            return {**super().forking, "PYTHONPATH": str(ROOT / "src")}
+
+    folder.mkdir()
+    (folder / "sequences.yaml").write_text(SEQUENCES.format(sample=ROOT / "resources/sample"))
+    return RealProject(folder)
+
+
+def _load_stand_ins():
     path = ROOT / "tests/workflow/conftest.py"
     specification = importlib.util.spec_from_file_location("stand_ins", path)
     module = importlib.util.module_from_spec(specification)
     specification.loader.exec_module(module)
-    return module.make_project(folder)
+    return module
 
 
 if __name__ == "__main__":
