@@ -155,7 +155,7 @@ class Project:
         kept = (
             (name, file)
             for name, file in names
-            if not {"logs", "benchmarks", ".store", ".made", ".snakemake_timestamp", "report.html"} & set(name.parts)
+            if not {"logs", "benchmarks", ".store", ".made", "report.html"} & set(name.parts)
         )
         return {name.as_posix(): file.read_bytes() for name, file in kept}
 
