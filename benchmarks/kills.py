@@ -111,7 +111,7 @@ def _begin_anew(project, kernels_too: bool) -> None:
 def _compare(found: dict[str, bytes], right: dict[str, bytes]) -> list[str]:
     """Return the names of files that are not the same, or are in one only.
 
-    Snakemake puts its mark into a folder when it has seen the job end, so a run that was killed before then leaves none.
+    Snakemake puts its mark into a folder once it has seen the job end; a run that was killed before leaves none.
     """
     names = {name for name in {*found, *right} if not name.endswith("/.snakemake_timestamp")}
     return sorted(name for name in names if found.get(name) != right.get(name))
