@@ -8,8 +8,10 @@ The store is the real one. The stages are the stand-ins of the tests; half of th
 one by one. With `--real` the stages are the real ones, in the quick preset, and every second time that all begins anew
 their kernels are compiled anew too.
 
-    python benchmarks/kills.py --jobs 180 --runs 50
-    python benchmarks/kills.py --jobs 14 --runs 6 --real
+    python benchmarks/kills.py --kills 180 --stops 50
+    python benchmarks/kills.py --kills 20 --stops 0 --real
+
+`--kills` counts SIGKILLs, `--stops` SIGTERMs and SIGINTs; of both, three in four go to a job, the fourth to the run.
 """
 
 from __future__ import annotations
@@ -32,7 +34,7 @@ import psutil
 from threedfs.store.audit import audit_results, audit_store
 
 ROOT = Path(__file__).resolve().parents[1]
-SIGNALS = (signal.SIGKILL, signal.SIGTERM, signal.SIGINT)
+WHOM = ("job", "job", "job", "run")
 PATIENCE = 5.0
 LATEST = 0.4  # of the time that a run takes; each goes on where the one before it was, so every part of it is hit
 MARK = "THREEDFS_KILLS"
@@ -50,30 +52,33 @@ sequences:
 def main() -> int:
     """Kill as often as asked; print figures, and what went wrong; return 1 if anything did."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("--jobs", type=int, default=180, help="signals to jobs (180)")
-    parser.add_argument("--runs", type=int, default=50, help="signals to runs (50)")
+    parser.add_argument("--kills", type=int, default=180, help="SIGKILLs to jobs or runs (180)")
+    parser.add_argument("--stops", type=int, default=50, help="SIGTERMs and SIGINTs to jobs or runs (50)")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--seconds", type=float, default=float("inf"), help="stop after so long")
     parser.add_argument("--target", action="append", default=[], help="a file that each run makes (all)")
     parser.add_argument("--real", action="store_true", help="the real stages")
     arguments = parser.parse_args()
     draw, begun = random.Random(arguments.seed), time.monotonic()
-    targets = ["job"] * arguments.jobs + ["run"] * arguments.runs
-    draw.shuffle(targets)
+    signals = [signal.SIGKILL] * arguments.kills
+    signals += [(signal.SIGTERM, signal.SIGINT)[index % 2] for index in range(arguments.stops)]
+    draw.shuffle(signals)
     counts, faults = Counter(), []
     with tempfile.TemporaryDirectory(prefix="threedfs-kills-") as folder:
         project = (_make_real_project if arguments.real else _make_project)(Path(folder) / "project")
         length, right = _run_undisturbed(project, arguments.target)
         print(f"a run takes {length:.1f} s and makes {len(right)} files", flush=True)
-        _begin_anew(project, kernels_too=False)
-        while targets and time.monotonic() - begun < arguments.seconds:
-            how = draw.choice(SIGNALS)
+        kernels = _count_kernels(project)
+        _begin_anew(project, kernels_too=arguments.real)
+        while signals and time.monotonic() - begun < arguments.seconds:
+            whom = draw.choice(WHOM)
             environment = project.forking if arguments.real or draw.random() < 0.5 else project.environment
             delay = draw.uniform(0.05, LATEST) * length
-            hit, status = _disturb(project, environment, arguments.target, targets[-1], how, delay)
+            hit, status = _disturb(project, environment, arguments.target, whom, signals[-1], delay)
             if hit:
-                counts[f"{targets.pop()} {how.name}"] += 1
-                print(f"{hit}, status {status}, {len(targets)} to go", flush=True)
+                counts[f"{whom} {signals.pop().name}"] += 1
+                counts["while kernels were missing"] += _count_kernels(project) < kernels
+                print(f"{hit}, status {status}, {len(signals)} to go", flush=True)
             faults += [f"{hit}: {fault}" for fault in _find_faults(project)]
             if status == 0:
                 counts["runs that ended well"] += 1
@@ -84,8 +89,8 @@ def main() -> int:
             counts["runs that ended well"] += 1
             faults += [f"{name} differs" for name in _compare(files, right)]
     for name, count in sorted(counts.items()):
-        print(f"{name:24}{count:>5}")
-    print(f"{'seconds':24}{time.monotonic() - begun:>5.0f}")
+        print(f"{name:28}{count:>5}")
+    print(f"{'seconds':28}{time.monotonic() - begun:>5.0f}")
     print(*faults, f"faults: {len(faults)}", sep="\n")
     return 1 if faults else 0
 
@@ -95,6 +100,11 @@ def _run_undisturbed(project, files: list[str]) -> tuple[float, dict[str, bytes]
     before = time.monotonic()
     project.run(*files)
     return time.monotonic() - before, project.artifacts()
+
+
+def _count_kernels(project) -> int:
+    """Return how many files of compiled kernels its store holds."""
+    return sum(file.is_file() for file in (project.folder / "results/.store/kernels").rglob("*"))
 
 
 def _begin_anew(project, kernels_too: bool) -> None:
