@@ -166,3 +166,17 @@ def test_tables_of_sets_that_are_gone_are_gone(finished):
     (finished.folder / "own.yaml").write_text("dataset: own\n")
     finished.run("--configfile", "own.yaml")
     assert [path.name for path in (finished.folder / "results/plots").iterdir()] == ["iou_own.svg"]
+
+
+@pytest.mark.parametrize("before", ['    write_metrics(run.results / "metrics.csv"', "    write_index_page("])
+def test_a_run_killed_while_it_writes_its_tables_and_pages_is_completed(finished, before):
+    right = finished.artifacts()
+    shutil.rmtree(finished.folder / "results")
+    death = "    import os, signal\n    os.kill(os.getpid(), signal.SIGKILL)\n"
+    finished.edit("src/threedfs/run_end/finish.py", before, death + before)
+    finished.run(good=False)
+    assert not (finished.folder / "results/index.html").exists()
+    finished.edit("src/threedfs/run_end/finish.py", death, "")
+    finished.run()
+    assert finished.artifacts() == right
+    assert "Nothing to be done" in finished.run()

@@ -1,6 +1,7 @@
 # How a run begins and ends; functions, not rules.
 import time
 
+from threedfs.run_end.cut_short import ask_to_collect_again
 from threedfs.store.fork_server import start_server
 from threedfs.store.heartbeat import name_run
 from threedfs.store.leftovers import wait_for_leftovers
@@ -9,6 +10,8 @@ from threedfs.store.run_lock import take_over
 RUN_LOCK = take_over(Path(".snakemake")) if workflow.is_main_process else None
 if workflow.is_main_process:
     name_run()
+if RUN_LOCK:
+    ask_to_collect_again(Path("results"))
 STARTED = time.time()
 REPORTED = ("cv2", "numba", "numpy", "pycolmap", "scipy", "skimage", "trimesh", "zarr")
 
