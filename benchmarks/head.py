@@ -10,7 +10,6 @@ its share of a core in a run whose jobs take the seconds of the real ones, which
 from __future__ import annotations
 
 import argparse
-import importlib.util
 import re
 import subprocess
 import sys
@@ -19,10 +18,10 @@ import time
 from pathlib import Path
 
 import psutil
+from kills import make_project
 
 from threedfs.params.configuration import METHODS
 
-ROOT = Path(__file__).resolve().parents[1]
 SEQUENCE = """\
   s{number}:
     source: resources/sample/video.mp4
@@ -43,7 +42,7 @@ def main() -> None:
     arguments = parser.parse_args()
     methods = [*(name for name in METHODS if name != "spectral_matting"), "spectral_matting"][: arguments.methods]
     with tempfile.TemporaryDirectory(prefix="threedfs-head-") as folder:
-        project = _load_stand_ins().make_project(Path(folder) / "project")
+        project = make_project(Path(folder) / "project")
         _write_sequences(project.folder, arguments.sequences, methods)
         idle = _measure_waiting(project, arguments.cores)
         head, wall, jobs = _measure_run(project, arguments.cores)
@@ -111,14 +110,6 @@ def _seconds_of(process: psutil.Popen) -> float:
     except psutil.NoSuchProcess:
         return 0.0
     return times.user + times.system
-
-
-def _load_stand_ins():
-    path = ROOT / "tests/workflow/conftest.py"
-    specification = importlib.util.spec_from_file_location("stand_ins", path)
-    module = importlib.util.module_from_spec(specification)
-    specification.loader.exec_module(module)
-    return module
 
 
 if __name__ == "__main__":

@@ -65,7 +65,7 @@ def main() -> int:
     draw.shuffle(signals)
     counts, faults = Counter(), []
     with tempfile.TemporaryDirectory(prefix="threedfs-kills-") as folder:
-        project = (_make_real_project if arguments.real else _make_project)(Path(folder) / "project")
+        project = (make_real_project if arguments.real else make_project)(Path(folder) / "project")
         length, right = _run_undisturbed(project, arguments.target)
         print(f"a run takes {length:.1f} s and makes {len(right)} files", flush=True)
         kernels = _count_kernels(project)
@@ -82,12 +82,12 @@ def main() -> int:
             faults += [f"{hit}: {fault}" for fault in _find_faults(project)]
             if status == 0:
                 counts["runs that ended well"] += 1
-                faults += [f"{hit}: {name} differs" for name in _compare(project.artifacts(), right)]
+                faults += [f"{hit}: {name} differs" for name in compare(project.artifacts(), right)]
                 _begin_anew(project, kernels_too=counts["runs that ended well"] % 2 == 0)
         if (project.folder / "results").is_dir():
             _, files = _run_undisturbed(project, arguments.target)
             counts["runs that ended well"] += 1
-            faults += [f"{name} differs" for name in _compare(files, right)]
+            faults += [f"{name} differs" for name in compare(files, right)]
     for name, count in sorted(counts.items()):
         print(f"{name:28}{count:>5}")
     print(f"{'seconds':28}{time.monotonic() - begun:>5.0f}")
@@ -118,7 +118,7 @@ def _begin_anew(project, kernels_too: bool) -> None:
         aside.rename(kernels)
 
 
-def _compare(found: dict[str, bytes], right: dict[str, bytes]) -> list[str]:
+def compare(found: dict[str, bytes], right: dict[str, bytes]) -> list[str]:
     """Return the names of files that are not the same, or are in one only.
 
     Snakemake puts its mark into a folder once it has seen the job end; a run that was killed before leaves none.
@@ -185,15 +185,15 @@ def _list_left() -> list[int]:
     return found
 
 
-def _make_project(folder: Path):
+def make_project(folder: Path):
     """Copy the project, with stand-ins for its stages."""
-    return _load_stand_ins().make_project(folder)
+    return load_stand_ins().make_project(folder)
 
 
-def _make_real_project(folder: Path):
+def make_real_project(folder: Path):
     """Make a folder in which the project's own workflow reconstructs the sample, in small."""
 
-    class RealProject(_load_stand_ins().Project):
+    class RealProject(load_stand_ins().Project):
         """A folder whose runs are those of the project itself."""
 
         @property
@@ -215,7 +215,7 @@ def _make_real_project(folder: Path):
     return RealProject(folder)
 
 
-def _load_stand_ins():
+def load_stand_ins():
     path = ROOT / "tests/workflow/conftest.py"
     specification = importlib.util.spec_from_file_location("stand_ins", path)
     module = importlib.util.module_from_spec(specification)

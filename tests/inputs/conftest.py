@@ -2,37 +2,20 @@
 
 from __future__ import annotations
 
-import json
 import sys
 from pathlib import Path
 
-import numpy as np
 import pytest
-import trimesh
-from PIL import Image
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from specimens import COLUMNS, COUNT, ROWS, cameras, disc, write_mask, write_video
+from specimens import write_sound
 
 
 @pytest.fixture(scope="session")
 def sound(tmp_path_factory) -> Path:
     """A folder with a video, photos, cameras, masks, a mesh and depth images that belong to each other."""
-    folder = tmp_path_factory.mktemp("sound")
-    write_video(folder / "video.mp4")
-    (folder / "photos").mkdir()
-    generator = np.random.default_rng(1)
-    for number in range(COUNT):
-        image = generator.integers(0, 255, (ROWS, COLUMNS, 3), dtype=np.uint8)
-        Image.fromarray(image).save(folder / f"photos/{number:06d}.png")
-        write_mask(folder / f"masks/{number:06d}.png", disc())
-        (folder / "depth").mkdir(exist_ok=True)
-        depth = np.full((ROWS, COLUMNS), 5000, np.uint16)
-        Image.fromarray(depth).save(folder / f"depth/{number:06d}.depth.png")
-    (folder / "cameras.json").write_text(json.dumps(cameras()))
-    trimesh.creation.icosphere(radius=1.1).export(folder / "mesh.ply")
-    return folder
+    return write_sound(tmp_path_factory.mktemp("sound"))
 
 
 @pytest.fixture

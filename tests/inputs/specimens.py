@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import av
 import numpy as np
+import trimesh
 from PIL import Image
 
 from threedfs.geometry.rigid import invert, look_at
@@ -48,3 +50,20 @@ def disc(radius: float = 12.0) -> np.ndarray:
     """Return what the cameras see of a ball in the origin, nearly."""
     rows, columns = np.mgrid[:ROWS, :COLUMNS]
     return np.hypot(columns - 31.5, rows - 23.5) < radius
+
+
+def write_sound(folder: Path) -> Path:
+    """Write a video, photos, cameras, masks, a mesh and depth images that belong to each other; return the folder."""
+    write_video(folder / "video.mp4")
+    (folder / "photos").mkdir()
+    generator = np.random.default_rng(1)
+    for number in range(COUNT):
+        image = generator.integers(0, 255, (ROWS, COLUMNS, 3), dtype=np.uint8)
+        Image.fromarray(image).save(folder / f"photos/{number:06d}.png")
+        write_mask(folder / f"masks/{number:06d}.png", disc())
+        (folder / "depth").mkdir(exist_ok=True)
+        depth = np.full((ROWS, COLUMNS), 5000, np.uint16)
+        Image.fromarray(depth).save(folder / f"depth/{number:06d}.depth.png")
+    (folder / "cameras.json").write_text(json.dumps(cameras()))
+    trimesh.creation.icosphere(radius=1.1).export(folder / "mesh.ply")
+    return folder

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import shutil
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
 import numpy as np
@@ -116,6 +116,14 @@ def few_cameras(count: int) -> Callable[[Path, Path], Path]:
     return changed(frames=cameras()["frames"][:count])
 
 
+def spoil(folder: Path, numbers: Iterable[int]) -> Path:
+    """Cut photos of a folder off; return the folder."""
+    for number in numbers:
+        photo = folder / f"{number}.png"
+        photo.write_bytes(photo.read_bytes()[:20])
+    return folder
+
+
 PHOTO = {f"{number}.png": NOISE for number in range(COUNT)}
 TRIANGLE = "v 0 0 0\nv 1 0 0\nv 0 1 0\n"
 PLY = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n"
@@ -192,6 +200,10 @@ SEQUENCES = {
     ("source", "16-bit grey"): (
         images({f"{number}.png": np.zeros((9, 9), np.uint16) for number in range(COUNT)}),
         "expected photos with 8 bits a channel, got 12 files of 16-bit or real-valued grey",
+    ),
+    ("source", "corrupt photos"): (
+        lambda folder, sound: spoil(images(PHOTO)(folder, sound), range(5)),
+        "expected at least 8 frames, got 7 and 5 that cannot be read; take more photos",
     ),
     ("source", "braces"): (images(PHOTO | {"{x}.png": NOISE}), "got '{x}.png'; rename it"),
     ("source", "line break"): (images(PHOTO | {"a\nb.png": NOISE}), "got 'a\\nb.png'; rename it"),
