@@ -21,21 +21,24 @@ Filmed = tuple[View, tuple[float, float]]
 class FrameList(Protocol):
     """What is asked of the working frames: no image.
 
-    Attributes
-    ----------
-    names : tuple of str
-    indices : (N,) int64
-        In their source.
-    ordered : bool
-        Whether they are of a video.
-    source_shape : (int, int)
-        (H, W) of the source.
+    It has properties, as frozen lists have attributes that can be read only.
     """
 
-    names: tuple[str, ...]
-    indices: np.ndarray
-    ordered: bool
-    source_shape: tuple[int, int]
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of the frames."""
+
+    @property
+    def indices(self) -> np.ndarray:
+        """(N,) int64, in their source."""
+
+    @property
+    def ordered(self) -> bool:
+        """Whether they are of a video."""
+
+    @property
+    def source_shape(self) -> tuple[int, int]:
+        """(H, W) of the source."""
 
 
 @dataclass(frozen=True)
