@@ -83,9 +83,9 @@ def test_there_are_commands():
 
 @pytest.mark.parametrize("words", COMMANDS)
 def test_a_command_is_taken(words):
-    program, arguments = name_program(words[0]), [word.strip("[]") for word in words[1:]]  # [--all] may be left out
+    program, arguments = name_program(words[0]), words[1:]
     if program == "threedfs":
-        _make_parser().parse_args(arguments)
+        _make_parser().parse_args([word.strip("[]") for word in arguments])  # what is in brackets may be left out
     elif program == "snakemake":
         check_snakemake(arguments)
     elif program == "make":
