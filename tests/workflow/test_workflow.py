@@ -447,6 +447,48 @@ def test_killed_run_goes_on_to_the_same_bytes(finished):
     assert not any(scratch.iterdir())
 
 
+def test_a_folder_that_a_killed_run_left_half_filled_is_filled(project):
+    """Stereo lies behind the checkpoint, where Snakemake does not look for what is half made."""
+    (project.folder / "wide.yaml").write_text("keyframes: {stereo_angle: 0}\n")
+    command = [*project.command, "--configfile", "wide.yaml"]
+    stereo = project.folder / "results/sample/03_scene/05_stereo"
+    with open(os.devnull, "w") as quiet:
+        process = subprocess.Popen(
+            command,
+            cwd=project.folder,
+            env={**project.environment, "STUB_PAUSE": "1"},
+            stdout=quiet,
+            stderr=quiet,
+            start_new_session=True,
+        )
+    wait_for(stereo.is_dir, process)
+    os.killpg(process.pid, signal.SIGKILL)
+    process.wait()
+    assert not list(stereo.glob("*.zarr.zip"))
+    assert jobs_done(project.run("--configfile", "wide.yaml"))["stereo"] == 4  # two keyframes, in both passes
+
+
+@pytest.mark.parametrize("old, new", [("{", "["), ('"needs_stereo": false', '"needs_stereo": 12345')])
+def test_rules_plan_by_the_keyframes_that_were_written(finished, old, new):
+    name = "sample/03_keyframes/keyframes.json"
+    right, file = finished.artifacts(), finished.folder / "results" / name
+
+    def damage():
+        status = file.stat()
+        file.write_text(right[name].decode().replace(old, new))
+        os.utime(file, ns=(status.st_atime_ns, status.st_mtime_ns))
+        shutil.rmtree(finished.folder / "results/sample/11_object")
+
+    damage()
+    output = finished.run()
+    assert "stereo" not in jobs_done(output) + jobs_taken(output)
+    assert {**finished.artifacts(), name: right[name]} == right
+    damage()
+    shutil.rmtree(finished.folder / "results/.store/objects")
+    said = finished.run(good=False)
+    assert f"{name}: expected the file that its job wrote" in said and "Traceback" not in said
+
+
 def wait_for(condition, process, seconds=240):
     """Wait until a condition holds while a process runs."""
     end = time.monotonic() + seconds

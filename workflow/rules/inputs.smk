@@ -10,6 +10,8 @@ from threedfs.memory import (
     estimate_memory_of_keyframes,
     estimate_memory_of_matting,
 )
+from threedfs.store.place import Store
+from threedfs.store.results import read_result
 
 FIELDS = {  # where each method that has one finds the object's field
     "fused_sdf": "07_fusion/object.zarr.zip",
@@ -100,10 +102,25 @@ def source_if_sound(wildcards):
     return given("source")(wildcards)
 
 
+def read_made(path):
+    """Return the content of a JSON file of the results, as its job wrote it."""
+    fallback = config["store_fallback"]
+    store = Store(
+        Path(config["store"]),
+        Path(fallback) if fallback else None,
+        Path("results/.made"),
+    )
+    try:
+        return read_result(Path(path), store)
+    except UserError as fault:
+        sys.exit(f"threedfs: {fault}")
+
+
 def read_keyframes(wildcards):
     """Return the content of a sequence's keyframes.json, once the checkpoint has written it."""
-    keyframes = checkpoints.keyframes.get(sequence=wildcards.sequence).output.keyframes
-    return json.loads(Path(keyframes).read_text())
+    return read_made(
+        checkpoints.keyframes.get(sequence=wildcards.sequence).output.keyframes
+    )
 
 
 def count_trials(wildcards):
@@ -113,7 +130,7 @@ def count_trials(wildcards):
 
 def choose_trials(wildcards, input):
     """Return the keyframes that take part in the depth experiment, among those with a true depth image."""
-    order = json.loads(Path(input.keyframes).read_text())["order"]
+    order = read_made(input.keyframes)["order"]
     folder = SEQUENCES[wildcards.sequence]["truth_depth"]
     return choose_with_depth(order, folder, count_trials(wildcards))
 
@@ -216,7 +233,7 @@ def located_to_segment(wildcards):
 def count_keyframes(input):
     """Return the number of keyframes that a job reads; 0 before it is known, or for a job that reads none."""
     keyframes = Path(input.get("keyframes", ""))
-    return len(json.loads(keyframes.read_text())["order"]) if keyframes.is_file() else 0
+    return len(read_made(keyframes)["order"]) if keyframes.is_file() else 0
 
 
 def pixels_of_view(wildcards):

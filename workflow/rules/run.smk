@@ -3,6 +3,7 @@ import time
 
 from threedfs.run_end.cut_short import ask_to_collect_again
 from threedfs.store.fork_server import start_server
+from threedfs.store.half_filled import remove_half_filled
 from threedfs.store.heartbeat import name_run
 from threedfs.store.leftovers import wait_for_leftovers
 from threedfs.store.run_lock import take_over
@@ -11,6 +12,7 @@ RUN_LOCK = take_over(Path(".snakemake")) if workflow.is_main_process else None
 if workflow.is_main_process:
     name_run()
 if RUN_LOCK:
+    remove_half_filled(Path(".snakemake"), Path("results"))
     ask_to_collect_again(Path("results"))
 STARTED = time.time()
 REPORTED = ("cv2", "numba", "numpy", "pycolmap", "scipy", "skimage", "trimesh", "zarr")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import json
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
@@ -20,11 +19,6 @@ def read_arguments(module: str) -> dict[str, str]:
     path = find_source(module)
     stamp = path.stat()
     return _read_run(path, stamp.st_mtime_ns, stamp.st_size)
-
-
-def read_order(keyframes: Path) -> list[str]:
-    """Read the names of the keyframes, in the order of the frames, from keyframes.json."""
-    return json.loads(keyframes.read_text(encoding="utf-8"))["order"]
 
 
 def fit_inputs(

@@ -15,10 +15,11 @@ from typing import Any, TextIO, cast
 from threedfs.errors import UserError
 from threedfs.progress import Progress
 from threedfs.store.action import Inputs, Task
-from threedfs.store.arguments import fit_inputs, read_arguments, read_order
+from threedfs.store.arguments import fit_inputs, read_arguments
 from threedfs.store.each import Chain, Fault, Passage, perform_each
 from threedfs.store.perform import perform
 from threedfs.store.place import Store, explained
+from threedfs.store.results import read_result
 
 _NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EROFS, errno.EFBIG)
 
@@ -90,7 +91,8 @@ def run_job(
         if refusal:
             raise UserError(refusal)
         arguments = read_arguments(f"{package}.stages.{stage}")
-        order = read_order(cast(Path, inputs["keyframes"])) if inputs.get("keyframes") else None
+        given = inputs.get("keyframes")
+        order = read_result(cast(Path, given), Store(store, fallback, made))["order"] if given else None
         fitting = fit_inputs(arguments, inputs, order=order)
         task = Task(stage, fitting, outputs, settings, {**identity, **labels}, seed, modules, package)
         progress = Progress(label, streams)
@@ -140,13 +142,14 @@ def run_keyframes(
     """
     sequence = _name_sequence(wildcards)
     with _logged(log, f"{rule} of {sequence}") as (file, streams):
-        order = read_order(cast(Path, inputs["keyframes"]))
+        place = Store(store, fallback, made)
+        order = read_result(cast(Path, inputs["keyframes"]), place)["order"]
         with explained(store):
             found = perform_each(
                 Chain(tuple(stages), inputs, outputs, settings, labels, seed, package),
                 order if keyframes is None else keyframes,
                 order,
-                Store(store, fallback, made),
+                place,
                 announce=lambda stage, keyframe: Progress(f"{stage or rule} of {sequence} {keyframe}", streams),
                 threads=threads,
             )
