@@ -4,10 +4,20 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Iterable, Iterator
-from typing import TextIO, TypeVar
+from collections.abc import Iterable, Iterator, Sized
+from typing import Protocol, TypeVar
 
 Item = TypeVar("Item")
+
+
+class Stream(Protocol):
+    """What takes lines."""
+
+    def write(self, text: str, /) -> object:
+        """Take text."""
+
+    def flush(self) -> object:
+        """Hand on what was taken."""
 
 
 class Progress:
@@ -23,9 +33,9 @@ class Progress:
         Least time between two counts, in seconds.
     """
 
-    def __init__(self, stage: str, stream: TextIO | None = None, interval: float = 2.0) -> None:
+    def __init__(self, stage: str, stream: Stream | None = None, interval: float = 2.0) -> None:
         self.stage = stage
-        self.stream = stream if stream is not None else sys.stderr
+        self.stream: Stream = stream if stream is not None else sys.stderr
         self.interval = interval
 
     def note(self, message: str) -> None:
@@ -34,7 +44,7 @@ class Progress:
 
     def track(self, items: Iterable[Item], what: str, total: int | None = None) -> Iterator[Item]:
         """Yield the items, writing "what i/total" now and then."""
-        if total is None and hasattr(items, "__len__"):
+        if total is None and isinstance(items, Sized):
             total = len(items)
         last = time.monotonic()
         for count, item in enumerate(items, start=1):

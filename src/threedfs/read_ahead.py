@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ThreadPoolExecutor
-from typing import TypeVar
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any, TypeVar
 
 Item = TypeVar("Item")
 Made = TypeVar("Made")
@@ -37,7 +37,7 @@ def read_ahead(items: Iterable[Item], *, threads: int, count: int = 4) -> Iterat
     left = iter(items)
     with ThreadPoolExecutor(1) as pool:
         try:
-            ready = deque(pool.submit(next, left, _END) for _ in range(count))
+            ready: deque[Future[Any]] = deque(pool.submit(next, left, _END) for _ in range(count))
             while (item := ready.popleft().result()) is not _END:
                 ready.append(pool.submit(next, left, _END))
                 yield item

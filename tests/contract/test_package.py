@@ -14,7 +14,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-DEVELOPMENT = {"setuptools", "pytest", "ruff", "snakefmt"}
+DEVELOPMENT = {"setuptools", "mypy", "pytest", "ruff", "snakefmt"}
 
 
 def name_of(requirement: str) -> str:

@@ -39,9 +39,8 @@ def _check(path: Path) -> int:
         looks.append(look_at_frame(frame.image))
         shape = frame.image.shape[:2]
     steps = [measure_step(*pair, shape) for pair in itertools.pairwise(looks)]
-    is_video = isinstance(source, Video)
-    seconds = source.seconds if is_video else None
-    about = describe_stream(path) if is_video else f"{count} photos"
+    seconds = source.seconds if isinstance(source, Video) else None
+    about = describe_stream(path) if isinstance(source, Video) else f"{count} photos"
     print(f"{path}: {source.shape[1]}x{source.shape[0]} pixels, {about}")
     if reader.skipped:
         print(f"       {reader.skipped} of {count} cannot be decoded and are left out")

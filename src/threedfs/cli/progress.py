@@ -128,7 +128,7 @@ class Progress:
         if rule in self._planned:
             self._worked[rule].append(1 - sum(told) / len(told) if told else 1.0)
         if parts := self._parts[rule]:
-            del parts[max(parts, key=parts.get)]
+            del parts[max(parts, key=lambda part: parts[part])]
 
     def _listen(self, stage: str, sequence: str, message: str) -> None:
         """Take what a job says of itself."""

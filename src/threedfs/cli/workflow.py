@@ -155,7 +155,7 @@ def _follow(command: Sequence[str], log: TextIO, progress: Progress) -> tuple[in
             start_new_session=True,
         )
         try:
-            for line in running.stdout:
+            for line in running.stdout or ():
                 log.write(line)
                 log.flush()
                 said.append(line.rstrip())

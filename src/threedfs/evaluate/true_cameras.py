@@ -19,23 +19,23 @@ Filmed = tuple[View, tuple[float, float]]
 
 
 class FrameList(Protocol):
-    """What is asked of the working frames: no image.
+    """What is asked of the working frames: no image. Properties, as frozen lists may only be read."""
 
-    Attributes
-    ----------
-    names : tuple of str
-    indices : (N,) int64
-        In their source.
-    ordered : bool
-        Whether they are of a video.
-    source_shape : (int, int)
-        (H, W) of the source.
-    """
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the frames."""
 
-    names: tuple[str, ...]
-    indices: np.ndarray
-    ordered: bool
-    source_shape: tuple[int, int]
+    @property
+    def indices(self) -> np.ndarray:
+        """(N,) int64, their numbers in the source."""
+
+    @property
+    def ordered(self) -> bool:
+        """Whether they are of a video."""
+
+    @property
+    def source_shape(self) -> tuple[int, int]:
+        """(H, W) of the source."""
 
 
 @dataclass(frozen=True)

@@ -111,12 +111,13 @@ def _read_poses(path: Path) -> tuple[dict[str, np.ndarray], Intrinsics | None]:
 def _join(
     path: Path, poses: Mapping[str, np.ndarray], stated: Intrinsics | None, given: Intrinsics | None
 ) -> list[GivenCamera]:
-    if stated is None and given is None:
+    intrinsics = stated if given is None else given
+    if intrinsics is None:
         raise UserError(
             f"{path}: expected intrinsics of the cameras, in camera-intrinsics.txt beside the poses or by the "
             "sequence's key intrinsics, got none; those of a Kinect's colour camera are about [525, 525, 320, 240]."
         )
-    lens = Lens(Camera(0, 0, *map(float, given or stated)))
+    lens = Lens(Camera(0, 0, *map(float, intrinsics)))
     return [GivenCamera(name, None, lens, _rigid_inverse(pose)) for name, pose in poses.items()]
 
 

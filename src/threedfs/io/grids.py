@@ -19,7 +19,7 @@ def describe_grid(grid: VoxelGrid) -> dict[str, Any]:
     }
 
 
-def grid_of(attributes: Mapping[str, Any], shape: tuple[int, ...]) -> VoxelGrid:
+def grid_of(attributes: Mapping[str, Any], shape: tuple[int, int, int]) -> VoxelGrid:
     """Return the grid of `describe_grid`'s values and a volume's shape."""
     origin, axes = np.array(attributes["origin"]), np.array(attributes["axes_world"])
     return VoxelGrid(origin, attributes["spacing"], shape, axes)

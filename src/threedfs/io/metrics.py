@@ -7,6 +7,7 @@ import io
 from collections.abc import Iterable
 from dataclasses import fields
 from pathlib import Path
+from typing import Any
 
 from threedfs.errors import UserError
 from threedfs.evaluate.scores import Metric
@@ -50,7 +51,7 @@ def read_metrics(path: Path) -> list[Metric]:
     metrics = []
     for line, row in enumerate(rows[1:], start=2):
         try:
-            values = dict(zip(COLUMNS, row, strict=True))
+            values: dict[str, Any] = dict(zip(COLUMNS, row, strict=True))
             metrics.append(Metric(**{**values, "value": float(values["value"])}))
         except ValueError:
             raise UserError(

@@ -60,7 +60,8 @@ def write_ome_zarr(
     shutil.rmtree(temporary, ignore_errors=True)
     try:
         group = zarr.open_group(temporary, mode="w", zarr_format=3)
-        datasets, level = [], np.ascontiguousarray(volume.T, np.float32)
+        datasets: list[dict[str, Any]] = []
+        level = np.ascontiguousarray(volume.T, np.float32)
         while True:
             number = len(datasets)
             _put(group, str(number), level)

@@ -9,6 +9,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -23,7 +24,7 @@ INTRINSICS_FILE = "camera-intrinsics.txt"
 _LOOSE = 1e-2
 """Poses of 7-Scenes are products in single precision of many steps of a tracker: off by up to 1e-3."""
 
-Intrinsics = tuple[float, float, float, float]
+Intrinsics = Sequence[float]
 """fx, fy, cx, cy in pixels of the images, integer pixel centres."""
 
 

@@ -69,7 +69,7 @@ def tell_scale(scale: Scale) -> str:
     'given height of 95 mm'
     """
     length = f"{1000 * scale.known:g} mm"
-    if scale.source == "height":
+    if scale.uncertainty is None:  # nothing was measured
         return f"given height of {length}"
     what = {"tag": f"tag of {length}", "board": f"board with squares of {length}"}[scale.source]
     return f"{what} ({scale.detail}) in {scale.frames} frames, uncertain by {100 * scale.uncertainty:.1f} %"

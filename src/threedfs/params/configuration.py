@@ -60,7 +60,7 @@ _DATASET = {"type": "string", "pattern": SEQUENCE_NAME}
 
 def configuration_schema() -> dict[str, Any]:
     """Return the JSON schema of the configuration."""
-    truth = {name: _PATH for name in ("masks", "cameras", "mesh", "depth")}
+    truth: dict[str, Any] = {name: _PATH for name in ("masks", "cameras", "mesh", "depth")}
     truth["depth_scale"] = {"type": "number", "exclusiveMinimum": 0}
     truth["depth_camera"] = {
         "type": ["object", "null"],

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import fields
+import inspect
 from typing import Any, TypeVar
 
 Rule = TypeVar("Rule")
@@ -30,5 +30,5 @@ def make_rule(rule: type[Rule], params: Any, **given: Any) -> Rule:
     >>> make_rule(Limits, StereoCheckParams(max_cost=0.2), angle=1.5)
     Limits(max_cost=0.2, angle=1.5)
     """
-    names = rule._fields if hasattr(rule, "_fields") else [field.name for field in fields(rule)]
+    names = inspect.signature(rule).parameters
     return rule(**{name: given[name] if name in given else getattr(params, name) for name in names})

@@ -61,7 +61,8 @@ def find_params(stage: str, package: str = "threedfs") -> type | None:
     if importlib.util.find_spec(name) is None:
         return None
     module = importlib.import_module(name)
-    own = (value for value in vars(module).values() if is_dataclass(value) and value.__module__ == name)
+    classes = (value for value in vars(module).values() if isinstance(value, type) and is_dataclass(value))
+    own = (value for value in classes if value.__module__ == name)
     (found,) = (value for value in own if value.__name__.endswith("Params"))
     return found
 

@@ -91,7 +91,7 @@ def list_sequences(
         If a name cannot name a folder, the one video is not there, it is not clear where the images come from, or all
         sequences are absent.
     """
-    given = dict(config["sequences"] or {})
+    given: dict[str, Any] = dict(config["sequences"] or {})
     if config["video"]:
         if not os.path.exists(config["video"]):
             raise UserError(f"video: expected a video file or a folder of photos, found no {config['video']}.")

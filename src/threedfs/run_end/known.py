@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 from threedfs.errors import UserError
 from threedfs.io.keyframes import read_keyframes
@@ -54,7 +55,7 @@ def gather(folder: Path, methods: Collection[str] | None = None, stale: Collecti
         "place": (folder / "03_scene/support.json", read_support),
         "keyframes": (folder / "04_crops/keyframes.json", read_keyframes),
     }
-    found = {}
+    found: dict[str, Any] = {}
     for name, (path, read) in places.items():
         try:
             found |= {name: read(path)} if path.is_file() and str(path) not in stale else {}

@@ -97,10 +97,8 @@ def write_report(folder: Path, context: Context) -> Path:
         folder.name,
         failures=tuple(context.failures),
         findings=() if failed else (*_doubt(context.metrics), *findings),
-        viewer=embed_viewer(shown.surface, known.place.plane, known.poses.views, embed_image(shown.still, _STILL))
-        if shown
-        else "",
-        path=draw_path(known.poses.views, known.keyframes, known.place) if known.place else "",
+        viewer=_embed(shown, known),
+        path=draw_path(known.poses.views, known.keyframes, known.place) if known.place and known.poses else "",
         keyframes=tuple(_picture_keyframes(folder, known, context, with_masks=not failed)),
         size="" if failed else _tell_size(folder, known),
         files={} if failed else _find_files(folder, context.methods),
@@ -169,7 +167,7 @@ def find_out(folder: Path, methods: Collection[str] | None = None) -> list[Findi
 
 
 def _judge(folder: Path, known: Known) -> list[Finding]:
-    if known.place is None or known.method is None:
+    if known.place is None or known.poses is None or known.method is None:
         return []
     path = folder / "11_object" / known.method / "mesh.ply"
     sound = {figure.name: figure.value for figure in soundness_figures(read_mesh(path))}
@@ -201,15 +199,24 @@ def _find_mesh(folder: Path, known: Known) -> _Shown | None:
     if known.place is None or known.method is None or not known.keyframes:
         return None
     own = folder / "11_object" / known.method
+    surface: TexturedMesh | Mesh
     if (own / "textured/mesh.obj").is_file():
-        surface = read_textured_obj(own / "textured/mesh.obj")
-        photographer = photograph_texture(surface)
+        surface = textured = read_textured_obj(own / "textured/mesh.obj")
+        photographer = photograph_texture(textured)
     else:
-        surface, colors = read_colored_mesh(own / "mesh.ply")
-        plain = np.full((len(surface.vertices), 3), 180.0)
-        photographer = photograph_vertices(surface, plain if colors is None else colors.astype(np.float64))
+        mesh, colors = read_colored_mesh(own / "mesh.ply")
+        surface = mesh
+        plain = np.full((len(mesh.vertices), 3), 180.0)
+        photographer = photograph_vertices(mesh, plain if colors is None else colors.astype(np.float64))
     image, seen = photographer.take(next(iter(known.keyframes.values())).view)
     return _Shown(surface, np.where(seen[..., None], image.clip(0, 255), 244).astype(np.uint8))
+
+
+def _embed(shown: _Shown | None, known: Known) -> str:
+    """Return the viewer of the mesh, empty where there is none."""
+    if shown is None or known.place is None or known.poses is None:
+        return ""
+    return embed_viewer(shown.surface, known.place.plane, known.poses.views, embed_image(shown.still, _STILL))
 
 
 def _picture_keyframes(folder: Path, known: Known, context: Context, with_masks: bool) -> Iterator[KeyframePictures]:

@@ -69,7 +69,7 @@ def score_mesh(mesh: Path, truth: Path, cameras: Path | None = None, true_camera
     mine, true = read_given_mesh(mesh), read_given_mesh(truth)
     if (cameras is None) != (true_cameras is None):
         raise UserError("score: expected cameras of the mesh and of the true one, or of none, got those of one.")
-    if cameras is not None:
+    if cameras is not None and true_cameras is not None:
         mine = Mesh(_align(cameras, true_cameras)[2].apply(mine.vertices), mine.faces)
     apart = np.linalg.norm(mine.vertices.mean(axis=0) - true.vertices.mean(axis=0))
     if not apart <= bounding_diagonal(true):

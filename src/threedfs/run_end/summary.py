@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from threedfs.io.atomic import atomic
 
@@ -49,6 +50,9 @@ def read_summary(folder: Path) -> Summary | None:
     """Read the summary of a sequence; None if there is none, or it is damaged or of another version."""
     try:
         content = json.loads((folder / _NAME).read_text(encoding="utf-8"))
-        return Summary(**{key: tuple(value) if isinstance(value, list) else value for key, value in content.items()})
+        values: dict[str, Any] = {
+            key: tuple(value) if isinstance(value, list) else value for key, value in content.items()
+        }
+        return Summary(**values)
     except (OSError, ValueError, TypeError, AttributeError):
         return None

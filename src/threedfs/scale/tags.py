@@ -59,7 +59,7 @@ def find_tags(image: np.ndarray, window: int) -> dict[str, np.ndarray]:
     found: dict[str, list[np.ndarray | None]] = {}
     for points, number, family in zip(corners, np.ravel(numbers), np.ravel(families), strict=True):
         refined = refine_square(light, points.reshape(4, 2).astype(np.float64), window)
-        found.setdefault(f"{names[family]} {number}", []).append(refined)
+        found.setdefault(f"{names[int(family)]} {number}", []).append(refined)
     return {name: seen[0] for name, seen in sorted(found.items()) if len(seen) == 1 and seen[0] is not None}
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from threedfs.crops.depth_range import expect_crop_range
 from threedfs.crops.place import find_window, measure_object, place_crops, shrink_view
 from threedfs.crops.resample import resample
+from threedfs.errors import UserError
 from threedfs.frames.decode import scan_source
 from threedfs.frames.scale import scale_camera
 from threedfs.geometry.lens import Lens
@@ -63,7 +64,13 @@ def run(
         )
         for picture in job.progress.track(pictures, "crop", len(of_frame)):
             view, crop = of_frame[picture.name]
-            yield Crop(picture.name, *resample(picture.load(), Lens(view.camera, *posed.distortion), crop.camera))
+            image = picture.load()
+            if image is None:
+                raise UserError(
+                    f"{source}: expected to decode {picture.name} as before, found that it no longer can be; "
+                    "leave the source as it is during a run, and run again."
+                )
+            yield Crop(picture.name, *resample(image, Lens(view.camera, *posed.distortion), crop.camera))
 
     write_crops(
         crops, read_ahead(cut(), threads=job.threads), job.header, ordered=scanned.ordered, source_shape=scanned.shape

@@ -137,7 +137,9 @@ def _score_masks(
             f"{len(left_out)} of {len(files)} true masks are scored nowhere: {_name_some(sorted(left_out))}; {why}; "
             "give masks of frames that are worked on, their truth.cameras, or set keyframes_at_truth"
         )
-    drawn = {name: (surface, posed[name], solved.distortion, store.source_shape) for name in at_frame}
+    drawn = {}
+    if surface is not None:
+        drawn = {name: (surface, posed[name], solved.distortion, store.source_shape) for name in at_frame}
     elsewhere = _compare_drawn(drawn, files, job)
     figures = [
         *mask_figures(overlap | elsewhere),
@@ -149,7 +151,9 @@ def _score_masks(
     if inverted:
         job.progress.note(f"true masks agree better when inverted: {_name_some(inverted)}; is white the object?")
         figures.append(Figure("masks_inverted", len(inverted), "masks"))
-    drawn = {name: (aligned, *unseen[name], unseen[name][0].camera.shape) for name in at_unseen}
+    drawn = {}
+    if aligned is not None:
+        drawn = {name: (aligned, *unseen[name], unseen[name][0].camera.shape) for name in at_unseen}
     return figures + mask_figures(_compare_drawn(drawn, files, job), "iou_unseen")
 
 

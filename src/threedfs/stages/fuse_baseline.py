@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
 from threedfs.fusion.fuse import fuse_views, limit_clip_distance
 from threedfs.fusion.hard_maximum import HardMaximum
 from threedfs.fusion.softmax import SoftMaximum
+from threedfs.fusion.view_fusion import ViewFusion
 from threedfs.fusion.weighted_average import WeightedAverage
 from threedfs.geometry.grid import cover_box
 from threedfs.io.keyframes import read_keyframes
@@ -19,7 +21,7 @@ from threedfs.params.fuse_baseline import FuseBaselineParams
 _PRINTED_HARDNESS = 10.0
 """Of Eq. 15 (Section 3.3.1)."""
 
-_FUSIONS = {
+_FUSIONS: dict[str, Callable[..., ViewFusion]] = {
     "tsdf": WeightedAverage,
     "hard_maximum": HardMaximum,
     "soft_maximum": partial(SoftMaximum, hardness=_PRINTED_HARDNESS, distrust=0.0),

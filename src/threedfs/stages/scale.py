@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -53,9 +53,11 @@ def run(
         If too few frames see the tag or the board, or its distances disagree.
     """
     if known["source"] == "height":
+        assert mesh is not None and support is not None  # the rule gives what the source needs
         height = height_on(read_mesh(mesh), read_support(support).plane)
         found = Scale(known["length"] / height, None, "height", known["length"], 0, known["method"])
     else:
+        assert frames is not None and poses is not None
         find = _measure_tag if known["source"] == "tag" else _measure_board
         result, detail = find(_Scene(frames, read_poses(poses)), known, params, job)
         found = Scale(result.scale, result.spread, known["source"], known["length"], result.frames, detail)
@@ -123,7 +125,9 @@ def _measure_board(scene: _Scene, known: Mapping[str, Any], params: ScaleParams,
     return result, detail
 
 
-def _refuse(what: str, found: Mapping[str, tuple[int, Measurement | None]], params: ScaleParams, advice: str) -> None:
+def _refuse(
+    what: str, found: Mapping[str, tuple[int, Measurement | None]], params: ScaleParams, advice: str
+) -> NoReturn:
     """Say what was found instead: the thing that most frames see."""
     said = "found none"
     if found:

@@ -115,6 +115,7 @@ def run(
     shaping = make_rule(ShapeRule, params, complete=make_rule(HullRule, params))
     surface = shape_surface(confirmed, place.plane, cut.masks, views, valid, shaping)
     if surface is not None and params.frames:
+        first = surface
         learnt = read_appearance(appearance)
         reach = params.outline_ramp * voxel
         cut_as = make_params(SegmentParams, segmentation)
@@ -128,7 +129,7 @@ def run(
         )
 
         def outline(name):
-            view, silhouette = frames[name], draw_silhouette(surface, frames[name])
+            view, silhouette = frames[name], draw_silhouette(first, frames[name])
             ramp = pixels_at(place.box, view, reach)
             return mask_frame(view, images.image(name), valid[name], silhouette, ramp, learnt, refine)
 

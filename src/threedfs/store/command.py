@@ -10,7 +10,7 @@ from collections import defaultdict
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, TextIO
+from typing import Any, TextIO, cast
 
 from threedfs.errors import UserError
 from threedfs.progress import Progress
@@ -90,7 +90,7 @@ def run_job(
         if refusal:
             raise UserError(refusal)
         arguments = read_arguments(f"{package}.stages.{stage}")
-        order = read_order(inputs["keyframes"]) if inputs.get("keyframes") else None
+        order = read_order(cast(Path, inputs["keyframes"])) if inputs.get("keyframes") else None
         fitting = fit_inputs(arguments, inputs, order=order)
         task = Task(stage, fitting, outputs, settings, {**identity, **labels}, seed, modules, package)
         progress = Progress(label, streams)
@@ -140,7 +140,7 @@ def run_keyframes(
     """
     sequence = _name_sequence(wildcards)
     with _logged(log, f"{rule} of {sequence}") as (file, streams):
-        order = read_order(inputs["keyframes"])
+        order = read_order(cast(Path, inputs["keyframes"]))
         with explained(store):
             found = perform_each(
                 Chain(tuple(stages), inputs, outputs, settings, labels, seed, package),

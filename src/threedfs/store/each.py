@@ -147,10 +147,13 @@ def perform_each(
     def tell(keyframe: str, how: str, seconds: float) -> None:
         announce("", keyframe).note(f"{how} in {seconds:.1f} s ({len(found)}/{len(keyframes)})")
 
+    def announce_of(keyframe: str) -> Callable[[str], Progress]:
+        return lambda stage: announce(stage, keyframe)
+
     reached: dict[str, tuple[Outcome, ...]] = {}
     for keyframe in keyframes:
         started = time.monotonic()
-        outcomes = _fetch_first(chain.tasks(keyframe, order), store, lambda stage, key=keyframe: announce(stage, key))
+        outcomes = _fetch_first(chain.tasks(keyframe, order), store, announce_of(keyframe))
         if len(outcomes) == len(chain.stages):
             found[keyframe] = Passage(outcomes)
             tell(keyframe, "taken from the store", time.monotonic() - started)
@@ -169,7 +172,7 @@ def perform_each(
         def work(keyframe: str) -> tuple[Passage, float]:
             started = time.monotonic()
             tasks = chain.tasks(keyframe, order)[len(reached[keyframe]) :]
-            rest = _pass_through(tasks, store, beat, lambda stage: announce(stage, keyframe))
+            rest = _pass_through(tasks, store, beat, announce_of(keyframe))
             return Passage((*reached[keyframe], *rest.outcomes), rest.fault), time.monotonic() - started
 
         for keyframe, answer in share_out(work, list(reached), threads):
@@ -177,8 +180,9 @@ def perform_each(
                 found[keyframe] = Passage(reached[keyframe], Fault("", str(answer)))
                 continue
             found[keyframe], seconds = answer
-            tell(keyframe, "not done, stopped" if found[keyframe].fault else "done", seconds)
-            if found[keyframe].fault and found[keyframe].fault.trace:
+            fault = found[keyframe].fault
+            tell(keyframe, "not done, stopped" if fault else "done", seconds)
+            if fault and fault.trace:
                 break
     return {keyframe: found[keyframe] for keyframe in keyframes if keyframe in found}
 
@@ -213,7 +217,7 @@ def _confirm_inputs(
 
 def _pass_through(tasks: Sequence[Task], store: Store, beat: Path, announce: Callable[[str], Progress]) -> Passage:
     """Do stages that are loaded, one after the other, up to the first that fails."""
-    outcomes = []
+    outcomes: list[Outcome] = []
     for task in tasks:
         started, progress = time.monotonic(), announce(task.stage)
 

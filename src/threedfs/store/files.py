@@ -7,8 +7,8 @@ import os
 import shutil
 import socket
 import stat
+from io import BufferedReader
 from pathlib import Path
-from typing import BinaryIO
 
 _SUFFIX = ".part"
 
@@ -33,7 +33,7 @@ def write_atomically(path: Path, data: bytes) -> None:
         temporary.unlink(missing_ok=True)
 
 
-def open_regular(path: Path) -> BinaryIO:
+def open_regular(path: Path) -> BufferedReader:
     """Open a file to read if it is one: never through a link, and never waiting on a pipe.
 
     Raises

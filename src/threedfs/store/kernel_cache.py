@@ -42,7 +42,7 @@ class SealedFiles(caching.IndexDataCacheFile):
 
     @property
     def _root(self) -> Path:
-        return Path(config.CACHE_DIR).parent
+        return Path(config.CACHE_DIR).parent  # type: ignore[attr-defined]
 
     @property
     def _stem(self) -> str:
@@ -62,7 +62,7 @@ class Locator(caching.UserProvidedCacheLocator):
     @classmethod
     def from_function(cls, py_func: Any, py_file: str) -> Locator | None:
         """Return the locator of a function in a file."""
-        caching.IndexDataCacheFile = SealedFiles  # numba makes one of these next
+        caching.IndexDataCacheFile = SealedFiles  # type: ignore[misc]  # numba makes one of these next
         return cls(py_func, py_file) if os.path.exists(py_file) else None
 
     def ensure_cache_path(self) -> None:

@@ -26,13 +26,13 @@ class Objects:
     ----------
     folder : Path
         Holds ``<first two digits>/<sha256>``, read-only files.
-    digests : InputDigests
+    digests : InputDigests or None
         Is told what is checked out, so that the next job need not hash it.
     fallback : Path or None
         Objects of another store, which is only read: those that are missing or damaged here are copied from there.
     """
 
-    def __init__(self, folder: Path, digests: InputDigests, fallback: Path | None = None) -> None:
+    def __init__(self, folder: Path, digests: InputDigests | None, fallback: Path | None = None) -> None:
         self.folder = folder
         self.digests = digests
         self.fallback = fallback
@@ -85,7 +85,7 @@ class Objects:
             os.replace(temporary, target)
         finally:
             remove(temporary)
-        if isinstance(content, str):
+        if isinstance(content, str) and self.digests is not None:
             self.digests.remember(target, content)
 
     def keep_copy(self, digest: str) -> None:

@@ -51,7 +51,8 @@ def measure(store: Path, keys: Mapping[str, Collection[str]]) -> Usage:
         The actions that each sequence needs.
     """
     sizes = {path.name: size_of(path) for path in walk_places(store / "objects")}
-    by_stage, by_key = defaultdict(set), {}
+    by_stage: defaultdict[str, set[str]] = defaultdict(set)
+    by_key: dict[str, set[str]] = {}
     for key, record in read_all(store):
         by_key[key] = {*digests_of(record["outputs"])}
         by_stage[record["stage"]] |= by_key[key]

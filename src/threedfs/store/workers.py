@@ -11,7 +11,8 @@ from collections import deque
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from multiprocessing.connection import Connection, wait
-from typing import TypeVar
+from multiprocessing.process import BaseProcess
+from typing import TypeVar, cast
 
 Item = TypeVar("Item")
 Answer = TypeVar("Answer")
@@ -59,7 +60,7 @@ def share_out(
     """
     context = multiprocessing.get_context("fork")
     pending = deque(items)
-    workers: dict[Connection, multiprocessing.Process] = {}
+    workers: dict[Connection, BaseProcess] = {}
     busy: dict[Connection, Item] = {}
     try:
         for _ in range(min(count, len(items))):
@@ -70,20 +71,21 @@ def share_out(
             workers[here] = process
             _hand_out(pending, here, busy)
         while busy:
-            for here in wait(list(busy)):
+            for ready in wait(list(busy)):
+                here = cast(Connection, ready)
                 item = busy.pop(here)
                 try:
                     answer = here.recv()
                 except (EOFError, OSError):
                     workers[here].join()
-                    yield item, Death(workers[here].exitcode)
+                    yield item, Death(workers[here].exitcode or 0)
                 else:
                     _hand_out(pending, here, busy)
                     yield item, answer
     finally:
-        for here, process in workers.items():
-            process.kill()
-            process.join()
+        for here, worker in workers.items():
+            worker.kill()
+            worker.join()
             here.close()
 
 
