@@ -85,7 +85,7 @@ def test_there_are_commands():
 def test_a_command_is_taken(words):
     program, arguments = name_program(words[0]), words[1:]
     if program == "threedfs":
-        _make_parser().parse_args([word.strip("[]") for word in arguments])  # what is in brackets may be left out
+        _make_parser().parse_args(arguments)
     elif program == "snakemake":
         check_snakemake(arguments)
     elif program == "make":

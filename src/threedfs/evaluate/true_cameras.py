@@ -19,7 +19,7 @@ Filmed = tuple[View, tuple[float, float]]
 
 
 class FrameList(Protocol):
-    """What is asked of the working frames: no image. Properties, as frozen lists may only be read."""
+    """What is asked of the working frames: no image.
 
     It has properties, as frozen lists have attributes that can be read only.
     """
