@@ -71,16 +71,17 @@ _INTRODUCTION = """\
 
     snakemake --cores 2 --configfile my.yaml
 
-What the file names takes the place of the default, everything else stays. `presets/paper.yaml` has the constants of
-the paper, `presets/quick.yaml` makes everything small; files can be given together, the last counts:
-`--configfile my.yaml config/presets/paper.yaml`. Sections are merged key by key, so a second file adds its sequences
+Values in your file replace the defaults; everything else keeps its default. `presets/paper.yaml` has the constants of
+the paper, `presets/quick.yaml` makes everything small. Several files can be given together; where they differ, the
+last one counts: `--configfile my.yaml config/presets/paper.yaml`. Sections are merged key by key, so a second file adds its sequences
 to those of the first; lists and single values are replaced. `benchmark.yaml` is the whole benchmark.
-One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`. Other values can be given so too
+One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`. Other values can be given in the same way
 (`dataset`, `seed`, `store`, `store_fallback`, `'methods=[fused_sdf, tsdf]'`, `'depth={iterations: 5}'`); not with a
 dot, which Snakemake refuses.
 `datasets/` has files of sequences: the data sets that the project is measured on, and the layouts of published ones.
 
-An unknown key, a wrong type or a value out of range stops the run before it starts, with a sentence.
+An unknown key, a wrong type or a value out of range stops the run before it starts, with a sentence that
+says what to change.
 
 ## Sequences
 
@@ -95,7 +96,7 @@ frame's number from 0 (`120.png`) or like the photo; a few are enough. Scores: `
     sequences:
       mug: {source: mug.mp4, truth: {masks: mug_masks}}
 
-They may be added when all is done: only scores are computed. At a keyframe, its mask is scored; at another frame that
+They may be added after a run: then only scores are computed. At a keyframe, its mask is scored; at another frame that
 was worked on, the mesh as that frame's camera sees it. A long video is worked on at every n-th frame, and
 `threedfs export results/mug scene --scene` writes those: a mask of a frame between them is left out, which the tables
 tell, unless `truth.cameras` has its camera or `keyframes_at_truth` is set. A mask may be black all over, where the

@@ -22,7 +22,7 @@ class FuseSceneParams(FusionSettings):
     )
     region_least_reach: float = parameter(
         0.5,
-        "the region of interest holds all that is so near what the cameras look at (paper: 0)",
+        "the region of interest holds everything within this distance of what the cameras look at (paper: 0)",
         unit="viewing distance",
         minimum=0.0,
     )

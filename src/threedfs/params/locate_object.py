@@ -10,7 +10,7 @@ from threedfs.params.field import parameter
 
 @dataclass(frozen=True)
 class LocateObjectParams(ComponentSettings):
-    """How the object is told from the rest of a field."""
+    """How the object is separated from the rest of a field."""
 
     clearance: float = parameter(
         1.5,

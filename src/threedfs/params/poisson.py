@@ -14,7 +14,7 @@ class PoissonParams:
     octree_depth: int = parameter(8, "the surface has up to 2^octree_depth cells along its side", minimum=3, maximum=13)
     clearance: float = parameter(
         0.01,
-        "points so near the support plane are left out: they are the table's",
+        "points within this distance of the support plane are left out: they belong to the table",
         unit="longest side of the object's box",
         minimum=0.0,
     )

@@ -71,10 +71,17 @@ class PosesParams:
     patch_points: int = parameter(6000, "most points that are followed as patches", minimum=100)
     patch_radius: int = parameter(7, "of a patch", unit="pixel", minimum=3, maximum=30)
     patch_span: int = parameter(
-        24, "a point is looked for in frames of a video so near to one that sees it", unit="working frame", minimum=0
+        24,
+        "a point is looked for in frames of a video within this many of one that sees it",
+        unit="working frame",
+        minimum=0,
     )
     patch_angle: float = parameter(
-        30.0, "patches are followed to frames that look from directions so near", unit="degree", minimum=1, maximum=90
+        30.0,
+        "patches are followed to frames whose viewing directions differ by at most this",
+        unit="degree",
+        minimum=1,
+        maximum=90,
     )
     patch_shift: float = parameter(
         4.0, "largest distance of a patch from where it is expected", unit="pixel", exclusive_minimum=0

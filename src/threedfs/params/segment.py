@@ -32,7 +32,7 @@ class SegmentParams:
     )
     outer_margin: int = parameter(
         6,
-        "the over-estimate holds all that is so near the fused object (paper: 0)",
+        "the over-estimate holds everything within this distance of the fused object (paper: 0)",
         unit="voxel",
         minimum=0,
         maximum=100,

@@ -31,7 +31,7 @@ class SemidenseParams:
     )
     prior_spread: float = parameter(
         0.05,
-        "least standard deviation of the inverse depth told by sparse points, over that inverse depth",
+        "least standard deviation of the inverse depth that sparse points give, as a share of it",
         exclusive_minimum=0.0,
     )
     image_noise: float = parameter(
