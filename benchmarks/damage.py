@@ -4,9 +4,9 @@
     python benchmarks/damage.py --real
 
 First a bit of every record of the store flips, and one of each of ten files of results (nine by stand-ins); what the
-last stages made is deleted, so that they are done again and read those files. Then a bit of every kernel and of twenty
-objects flips, five objects are cut, five become folders, links and pipes, and all results are deleted. Each time all
-damage must be named, and the results of the run that follows must have the bytes of before.
+last stages made is deleted, so that they are done again and read those files. Then a bit of every record and kernel
+and of twenty objects flips, five objects are cut, five become folders, links and pipes, and all results are deleted.
+Each time all damage must be named, and the results of the run that follows must have the bytes of before.
 """
 
 from __future__ import annotations
@@ -62,13 +62,15 @@ def main() -> int:
         objects = sorted(path for path in (results / ".store/objects").rglob("*") if path.is_file())
         chosen = draw.sample(objects, min(len(objects), 30))
         kernels = sorted((results / ".store/kernels").rglob("*.kernel"))
-        _flip([*kernels, *chosen[10:]], draw)
+        _flip([*records, *kernels, *chosen[10:]], draw)
         for path in chosen[:5]:
             _write(path, path.read_bytes()[:-1])
         for path, kind in zip(chosen[5:10], BECOME, strict=True):
             _become(path, kind)
-        print(f"flipped: {len(kernels)} kernels, {len(chosen[10:])} objects; cut: 5 objects; no files: 5 objects")
-        faults += _check_named([*kernels, *chosen], results)
+        print(
+            f"flipped: {len(records)} records, {len(kernels)} kernels, {len(chosen[10:])} objects; cut: 5; no files: 5"
+        )
+        faults += _check_named([*records, *kernels, *chosen], results)
         for path in results.iterdir():
             if path.name != ".store":
                 shutil.rmtree(path) if path.is_dir() else path.unlink()
