@@ -149,6 +149,44 @@ def test_all_die_with_the_head(head, ask):
     wait_until(lambda: not is_alive(server) and not is_alive(fork), 5)
 
 
+@pytest.fixture
+def silent():
+    """A server that takes orders and answers none."""
+    address = f"threedfs-silent-{os.getpid()}"
+    with socket.socket(socket.AF_UNIX) as door:
+        door.bind(f"\0{address}")
+        door.listen()
+        yield door, address
+
+
+def test_a_server_that_ends_before_it_answers_may_have_forked_and_ends_the_script(silent, ask):
+    """Exact: at that moment a fork may be at work, which dies with the server; the script must not go on itself."""
+    door, address = silent
+    asking = ask(address, "print('went on')")
+    door.accept()[0].close()
+    out, err = asking.communicate(timeout=60)
+    assert (asking.returncode, out) == (1, "")
+    assert err == "threedfs: the process that jobs are forked from has ended; run again.\n"
+
+
+def test_an_interrupt_before_the_answer_ends_the_script_in_silence(silent, ask):
+    door, address = silent
+    asking = ask(address, "print('went on')")
+    with door.accept()[0] as asked:
+        assert asked.makefile().readline() == "\n"
+        asking.send_signal(signal.SIGINT)
+        out, err = asking.communicate(timeout=60)
+    assert (asking.returncode, out, err) == (-signal.SIGINT, "", "")
+
+
+def test_who_is_refused_is_interrupted_as_before(silent, ask):
+    door, address = silent
+    asking = ask(address, "import signal\nprint(signal.getsignal(signal.SIGINT) is signal.default_int_handler)")
+    with door.accept()[0] as asked:
+        asked.sendall(fork_server._REFUSED.encode())
+    assert asking.communicate(timeout=60)[0] == "True\n"
+
+
 def test_without_a_server_the_script_goes_on_itself(ask):
     asking = ask("threedfs-nobody-listens", "print(os.getppid())")
     assert asking.communicate(timeout=60)[0] == f"{os.getpid()}\n"
@@ -197,7 +235,7 @@ def test_junk_does_no_harm(head, ask, sent):
         client.connect(f"\0{head[1]}")
         client.sendall(sent)
         client.shutdown(socket.SHUT_WR)
-        assert client.recv(10) == b""
+        assert client.makefile().read() == fork_server._REFUSED
     assert ask(head[1], "raise SystemExit(4)").wait(60) == 4
 
 

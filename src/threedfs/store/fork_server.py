@@ -18,6 +18,7 @@ import socket
 import struct
 import subprocess
 import sys
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 from threedfs.store.workers import FORKED, ONE_THREAD, die_with_parent
@@ -43,6 +44,7 @@ _LIBRARIES = (
     "snakemake.iocontainers",
     "snakemake.logging",
 )
+_REFUSED = "refused\n"
 _PATIENCE = 5.0
 """Seconds for a script to say what it wants; it is a process of the same user on the same machine."""
 
@@ -81,7 +83,7 @@ def start_server() -> None:
 
 
 def hand_over() -> None:
-    """Have the server run this process's script, and exit as that does; return if there is no server.
+    """Have the server run this process's script, and exit as that does; return if there is no server, or it refuses.
 
     The script dies with this process, and this process waits for it.
     """
@@ -91,22 +93,29 @@ def hand_over() -> None:
     with socket.socket(socket.AF_UNIX) as server:
         try:
             server.connect(f"\0{address}")
-            if not _is_own(server):
-                return
-            order = Order(sys.argv, os.getcwd(), dict(os.environ), sys.executable)
-            socket.send_fds(server, [b"\n"], [1, 2])
-            server.sendall(json.dumps(vars(order)).encode() + b"\n")
-            answers = server.makefile()
-            if not answers.readline():
-                return
         except OSError:  # it is not ready yet, or gone
             return
-        signal.signal(signal.SIGINT, signal.SIG_DFL)  # nothing is left to tidy up here
-        status = answers.readline()
-    if not status:
+        if not _is_own(server):
+            return
+        interrupted = signal.signal(signal.SIGINT, signal.SIG_DFL)  # nothing is left to tidy up here
+        answers = _ask(server, Order(sys.argv, os.getcwd(), dict(os.environ), sys.executable))
+        if next(answers, "") == _REFUSED:
+            signal.signal(signal.SIGINT, interrupted)
+            return
+        status = next(answers, "")
+    if not status:  # the fork, if there was one, has died with the server
         sys.exit("threedfs: the process that jobs are forked from has ended; run again.")
     code = int(status)
     sys.exit(code if code >= 0 else 128 - code)
+
+
+def _ask(server: socket.socket, order: Order) -> Iterator[str]:
+    """Yield the lines that the server answers, up to its end."""
+    with contextlib.suppress(OSError):  # it may refuse before it has heard all
+        socket.send_fds(server, [b"\n"], [1, 2])
+        server.sendall(json.dumps(vars(order)).encode() + b"\n")
+    with contextlib.suppress(OSError):
+        yield from server.makefile()
 
 
 @dataclass(eq=False)
@@ -145,6 +154,7 @@ def _admit(asking: socket.socket, waiting: selectors.BaseSelector) -> Order | No
     """Fork for a script, if it can be served; return what to run in the fork, and None in the server."""
     received = _receive(asking)
     if received is None:
+        _tell(asking, _REFUSED)
         asking.close()
         return None
     order, streams = received
@@ -161,7 +171,7 @@ def _admit(asking: socket.socket, waiting: selectors.BaseSelector) -> Order | No
     fork = _Fork(process, os.pidfd_open(process), asking)
     waiting.register(fork.ending, selectors.EVENT_READ, fork)
     waiting.register(asking, selectors.EVENT_READ, fork)
-    _tell(asking, "forked")
+    _tell(asking, "forked\n")
     return None
 
 
@@ -172,7 +182,7 @@ def _attend(fork: _Fork, descriptor: int, waiting: selectors.BaseSelector) -> No
         signal.pidfd_send_signal(fork.ending, signal.SIGKILL)
         return
     fork.ended = True
-    _tell(fork.asking, str(os.waitstatus_to_exitcode(os.waitpid(fork.process, 0)[1])))
+    _tell(fork.asking, f"{os.waitstatus_to_exitcode(os.waitpid(fork.process, 0)[1])}\n")
     with contextlib.suppress(KeyError):  # who asked was gone before
         waiting.unregister(fork.asking)
     waiting.unregister(fork.ending)
@@ -222,7 +232,7 @@ def _is_own(other: socket.socket) -> bool:
 
 def _tell(asking: socket.socket, line: str) -> None:
     with contextlib.suppress(OSError):  # it may be gone
-        asking.sendall(f"{line}\n".encode())
+        asking.sendall(line.encode())
 
 
 def _import_libraries() -> None:
