@@ -12,6 +12,7 @@ Each time all damage must be named, and the results of the run that follows must
 from __future__ import annotations
 
 import argparse
+import importlib
 import os
 import random
 import shutil
@@ -20,7 +21,7 @@ import tempfile
 from collections.abc import Iterable
 from pathlib import Path
 
-from kills import compare, make_project, make_real_project
+from kills import ROOT, compare, make_project, make_real_project
 
 from threedfs.store.audit import Audit, audit_results, audit_store
 
@@ -43,6 +44,8 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--real", action="store_true", help="the real stages")
     arguments = parser.parse_args()
+    sys.path.insert(0, str(ROOT / "tests/store"))
+    replace = importlib.import_module("test_damage").replace
     draw = random.Random(arguments.seed)
     with tempfile.TemporaryDirectory(prefix="threedfs-damage-") as folder:
         project = (make_real_project if arguments.real else make_project)(Path(folder) / "project")
@@ -66,7 +69,7 @@ def main() -> int:
         for path in chosen[:5]:
             _write(path, path.read_bytes()[:-1])
         for path, kind in zip(chosen[5:10], BECOME, strict=True):
-            _become(path, kind)
+            replace(path, kind, project.folder)
         print(
             f"flipped: {len(records)} records, {len(kernels)} kernels, {len(chosen[10:])} objects; cut: 5; no files: 5"
         )
@@ -96,25 +99,6 @@ def _write(path: Path, content: bytes) -> None:
     path.write_bytes(content)
     path.chmod(status.st_mode)
     os.utime(path, ns=(status.st_atime_ns, status.st_mtime_ns))
-
-
-def _become(path: Path, kind: str) -> None:
-    """Put something that is no file in the place of a file."""
-    content = path.read_bytes()
-    path.unlink()
-    match kind:
-        case "folder":
-            (path / "inside").mkdir(parents=True)
-        case "empty folder":
-            path.mkdir()
-        case "link":
-            other = path.parents[4] / f"elsewhere-{path.name}"
-            other.write_bytes(content)
-            path.symlink_to(other)
-        case "dangling link":
-            path.symlink_to("nowhere")
-        case "pipe":
-            os.mkfifo(path)
 
 
 def _check_named(paths: Iterable[Path], results: Path) -> list[str]:

@@ -79,11 +79,14 @@ def main() -> int:
                 counts[f"{whom} {signals.pop().name}"] += 1
                 counts["while kernels were missing"] += _count_kernels(project) < kernels
                 print(f"{hit}, status {status}, {len(signals)} to go", flush=True)
-            faults += [f"{hit}: {fault}" for fault in _find_faults(project)]
+            found = _find_faults(project)
             if status == 0:
                 counts["runs that ended well"] += 1
-                faults += [f"{hit}: {name} differs" for name in compare(project.artifacts(), right)]
+                found += [f"{name} differs" for name in compare(project.artifacts(), right)]
                 _begin_anew(project, kernels_too=counts["runs that ended well"] % 2 == 0)
+            for fault in found:
+                print(f"FAULT: {fault}", flush=True)
+            faults += [f"{hit}: {fault}" for fault in found]
         if (project.folder / "results").is_dir():
             _, files = _run_undisturbed(project, arguments.target)
             counts["runs that ended well"] += 1

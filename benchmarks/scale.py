@@ -96,12 +96,11 @@ def run(folder: Path, quality: str, known: list[str]) -> tuple[float, float]:
     return height, read_scale(folder / "results/video/11_object/scale.json").metres_per_unit
 
 
-def measure_truth(folder: Path) -> tuple[float, float]:
-    """Return the object's true height, and the true size of a unit of the finished results, metres."""
-    height = float(np.ptp(read_mesh(folder / "mesh.ply").vertices[:, 2]))
+def measure_unit(folder: Path) -> float:
+    """Return the true size of a unit of the finished results, metres."""
     true = {given.name: given.cam_from_world for given in read_given_cameras(folder / "cameras.json")}
     views = [view for view in read_poses(folder / "results/video/02_poses/poses.json").views if view.name in true]
-    return height, align_poses([view.cam_from_world for view in views], [true[view.name] for view in views]).scale
+    return align_poses([view.cam_from_world for view in views], [true[view.name] for view in views]).scale
 
 
 def main() -> None:
@@ -119,7 +118,7 @@ def main() -> None:
     board = f"{CORNERS[0]}x{CORNERS[1]}:{1000 * SQUARE:g}mm"
     told = {"tag": f"{1000 * TAG:g}mm", "board": board, "height": f"{1000 * tall:.4f}mm"}
     found = {way: run(folder, arguments.quality, [f"--{way}", size]) for way, size in told.items()}
-    _, unit = measure_truth(folder)
+    unit = measure_unit(folder)
     for way, (height, scale) in found.items():
         print(
             f"{way:7} mesh {1000 * height:.2f} mm tall, {100 * (height / tall - 1):+.2f} % of {1000 * tall:.2f} mm; "

@@ -70,8 +70,8 @@ def objects_of(store: Path) -> list[Path]:
     return sorted(path for path in (store / "objects").rglob("*") if path.is_file())
 
 
-def replace(path: Path, how: str) -> None:
-    """Put damage in the place of a file."""
+def replace(path: Path, how: str, elsewhere: Path | None = None) -> None:
+    """Put damage in the place of a file; what a link leads to lies beside the store unless told where."""
     content = path.read_bytes()
     path.unlink()
     match how:
@@ -84,7 +84,7 @@ def replace(path: Path, how: str) -> None:
         case "empty folder":
             path.mkdir()
         case "link":
-            other = path.parent.parent.parent.parent / f"elsewhere-{path.name}"
+            other = (elsewhere or path.parents[3]) / f"elsewhere-{path.name}"
             other.write_bytes(content)
             path.symlink_to(other)
         case "dangling link":
