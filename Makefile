@@ -49,7 +49,7 @@ setup-slurm: setup
 	$(BIN)/pip install --quiet --disable-pip-version-check --require-hashes -r envs/slurm.txt
 
 cluster-test: setup-slurm
-	$(BIN)/python tests/cluster/run_cluster.py --install --kernels .venv/kernels
+	$(BIN)/python tests/cluster/run_cluster.py --install
 
 # the environment is made anew only when the pins change
 $(READY): envs/requirements.txt pyproject.toml

@@ -98,6 +98,8 @@ def _list_cases(folder: Path, home: Path) -> Iterator[tuple[str, list[str], str]
     os.utime(future, (4e9, 4e9))
     spoilt = {("source", "of the future"): (lambda place, sound: future, "expected a file of the past")}
     spoilt |= {("cameras", name): case for name, case in files.CAMERAS.items()}
+    # the check of the configuration sees it first
+    spoilt["cameras", "absent"] = (files.CAMERAS["absent"][0], "cameras: expected a file or folder, found no")
     spoilt |= {("truth_mesh", name): case for name, case in files.MESHES.items()} | files.SEQUENCES
     for number, ((key, name), (make, sentence)) in enumerate(spoilt.items()):
         place = folder / f"given{number}"

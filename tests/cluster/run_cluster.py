@@ -77,8 +77,8 @@ class Project:
         """Where the Snakefile is."""
         return self.folder if self.stubs else ROOT
 
-    def prepare(self, sequences: int, kernels: Path, store: str = "results/.store") -> None:
-        """Write the configuration; kernels are compiled once for all folders."""
+    def prepare(self, sequences: int, store: str = "results/.store", kernels: Path | None = None) -> None:
+        """Write the configuration, and give the store kernels that are compiled."""
         if self.stubs:
             _load_stand_ins().make_project(self.folder)
             self.environment |= {"PYTHONPATH": f"{self.folder / 'src'}:{self.environment['PYTHONPATH']}"}
@@ -86,7 +86,8 @@ class Project:
         text = _SEQUENCES.format(store=store)
         text += "".join(_SEQUENCE.format(name=f"s{n}", sample=sample, frames=24 - n) for n in range(sequences))
         (self.folder / store).mkdir(parents=True, exist_ok=True)
-        (self.folder / store / "kernels").symlink_to(kernels)
+        if kernels and kernels.is_dir():
+            shutil.copytree(kernels, self.folder / store / "kernels")
         (self.folder / "sequences.yaml").write_text(text)
 
     def start(self) -> subprocess.Popen:
@@ -144,7 +145,7 @@ def _load_stand_ins():
     return module
 
 
-def wait_for_job(slurm: PrivateSlurm, head: subprocess.Popen, rule: str, seconds: float = 240) -> str:
+def wait_for_job(slurm: PrivateSlurm, head: subprocess.Popen, rule: str, seconds: float = 900) -> str:
     """Return the number of a job of a rule once it has run for a second or two."""
     end = time.monotonic() + seconds
     while time.monotonic() < end and head.poll() is None:
@@ -235,8 +236,10 @@ def report(slurm: PrivateSlurm, project: Project, seconds: float) -> None:
     records = [dict(field.split("=", 1) for field in line.split() if "=" in field) for line in slurm.completed()]
     for record in records:
         print(*(record.get(name, "") for name in ("JobId", "JobState", "StartTime", "EndTime", "NodeList", "Tres")))
-    for said in sorted((project.folder / ".snakemake/slurm_logs").rglob("*.log")):  # those of failed jobs are kept
-        print(f"--- {said.name}, a job that failed:", *said.read_text().splitlines()[-40:], sep="\n    ")
+    failed = any(record["JobState"] != "COMPLETED" for record in records)
+    # those of failed jobs are kept, and of all in arrays
+    for said in sorted((project.folder / ".snakemake/slurm_logs").rglob("*.log")) if failed else ():
+        print(f"--- {said.name}:", *said.read_text().splitlines()[-40:], sep="\n    ")
     log = project.log()
     single, arrays = log.count("has been submitted with SLURM jobid"), log.count("Submitted array job")
     states = ", ".join(f"{count} {state.lower()}" for state, count in Counter(r["JobState"] for r in records).items())
@@ -274,7 +277,6 @@ def main() -> int:
     parser.add_argument("--arrays", action="store_true", help="submit jobs of one rule as arrays")
     parser.add_argument("--stubs", action="store_true", help="stand-ins for the stages")
     parser.add_argument("--target", help="a result to make, without results/s0/, as 03_scene/volume.zarr.zip (all)")
-    parser.add_argument("--kernels", type=Path, help="folder that keeps compiled kernels between runs")
     parser.add_argument("--local", type=Path, help="folder that keeps the local run between runs")
     parser.add_argument("--install", action="store_true", help="install Debian's Slurm and munge if they are missing")
     arguments = parser.parse_args()
@@ -303,14 +305,12 @@ def run(arguments: argparse.Namespace) -> None:
     """
     with ExitStack() as stack:
         folder = Path(stack.enter_context(tempfile.TemporaryDirectory(prefix="cluster-", ignore_cleanup_errors=True)))
-        kernels = (arguments.kernels or folder / "kernels").resolve()
-        kernels.mkdir(parents=True, exist_ok=True)
         targets = [f"results/s{n}/{arguments.target}" for n in range(arguments.sequences) if arguments.target]
         base = {**os.environ, "PYTHONPATH": f"{ROOT / 'src'}:{os.environ.get('PYTHONPATH', '')}"}
         kept = arguments.local or folder / "local"
         local = Project(kept, dict(base), [*targets, "--cores", "2"], arguments.stubs)
         if not (kept / "run.log").exists():
-            local.prepare(arguments.sequences, kernels)
+            local.prepare(arguments.sequences)
             if local.start().wait():
                 raise Failure(f"expected that the local run ends well:\n{local.log()[-3000:]}")
         slurm = stack.enter_context(PrivateSlurm(folder / "slurm"))
@@ -323,7 +323,7 @@ def run(arguments: argparse.Namespace) -> None:
             (project.folder / "results").mkdir()
             (project.folder / "disk/store").mkdir()
             (project.folder / "results/.store").symlink_to(project.folder / "disk/store")
-        project.prepare(arguments.sequences, kernels, store)
+        project.prepare(arguments.sequences, store, kept / store / "kernels")
         started = time.monotonic()
         try:
             run_with_fault(arguments, slurm, project)

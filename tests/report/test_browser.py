@@ -1,4 +1,7 @@
-"""Property: a report in a browser, opened as a file: what it draws, and that it neither fails nor asks the network."""
+"""Property: a report in a browser, opened as a file: what it draws, and that it neither fails nor asks the network.
+
+Root on Debian gets Chromium installed for it if there is no browser.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,7 @@ import os
 import re
 import shutil
 import subprocess
+from contextlib import suppress
 
 import cv2
 import numpy as np
@@ -18,9 +22,6 @@ from threedfs.report.pictures import embed_image
 from threedfs.report.viewer import embed_viewer
 from threedfs.texture.textured import TexturedMesh
 from threedfs.types import Box, Camera, Mesh, Plane, Support, View
-
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
-pytestmark = pytest.mark.skipif(BROWSER is None, reason="no chromium or google-chrome on this machine's PATH")
 
 CAMERA = Camera(40, 30, 50.0, 50.0, 19.5, 14.5)
 PLACE = Support(Plane(np.array([0.0, 0.0, 1.0]), 0.0), Box(np.eye(3), -np.ones(3), np.ones(3)), {})
@@ -39,7 +40,28 @@ _OF_THE_BROWSER = re.compile(r"https?://(?:[\w.-]+\.google\.com|optimizationguid
 """What it asks by itself: the time, accounts, models."""
 
 
-def visit(page, folder):
+def find_browser():
+    """Return the path of a browser, or None."""
+    return next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), None)
+
+
+def install_browser():
+    """Install Debian's Chromium; whether that went well is seen by looking for it again."""
+    environment = {**os.environ, "DEBIAN_FRONTEND": "noninteractive"}
+    patience = ["-o", "Acquire::Retries=0", "-o", "Acquire::http::Timeout=20", "-o", "Acquire::https::Timeout=20"]
+    for words in (["update"], ["install", "--yes", "--no-install-recommends", "chromium"]):
+        with suppress(subprocess.TimeoutExpired):
+            subprocess.run(["apt-get", "-qq", *patience, *words], env=environment, timeout=300, check=False)
+
+
+@pytest.fixture(scope="module")
+def browser():
+    if find_browser() is None and os.geteuid() == 0 and shutil.which("apt-get"):
+        install_browser()
+    return find_browser() or pytest.skip("no chromium or google-chrome on the PATH, and none could be installed")
+
+
+def visit(browser, page, folder):
     """Open a page from its file; return what the console says, what is asked of the network, and a picture."""
     (folder / "report.html").write_text(page, encoding="utf-8")
     flags = ["--headless", "--no-sandbox", "--no-first-run", "--disable-background-networking", "--disable-sync"]
@@ -47,7 +69,7 @@ def visit(page, folder):
     flags += ["--disable-component-update", f"--log-net-log={folder / 'net.json'}"]
     flags += [f"--user-data-dir={folder / 'profile'}", f"--screenshot={folder / 'page.png'}", "--window-size=900,800"]
     done = subprocess.run(
-        [BROWSER, *flags, "--enable-logging=stderr", "--virtual-time-budget=20000", (folder / "report.html").as_uri()],
+        [browser, *flags, "--enable-logging=stderr", "--virtual-time-budget=20000", (folder / "report.html").as_uri()],
         env={**os.environ, "HOME": str(folder)},
         capture_output=True,
         text=True,
@@ -75,7 +97,7 @@ def ring():
     return views
 
 
-def test_the_mesh_is_drawn_and_hostile_names_do_no_harm(tmp_path):
+def test_the_mesh_is_drawn_and_hostile_names_do_no_harm(tmp_path, browser):
     """The still picture is plain and the mesh red, so that what is red was drawn by the viewer."""
     ball = trimesh.creation.icosphere(subdivisions=3, radius=0.5)
     mesh = Mesh(ball.vertices + np.array([0, 0, 0.5]), np.asarray(ball.faces))
@@ -96,18 +118,18 @@ def test_the_mesh_is_drawn_and_hostile_names_do_no_harm(tmp_path):
         settings=texts,
         versions=texts,
     )
-    said, asked, picture = visit(write_page(report), tmp_path)
+    said, asked, picture = visit(browser, write_page(report), tmp_path)
     assert said == [] and asked == set()
     red = (picture[..., 0] > 60) & (picture[..., 0] > 2 * picture[..., 1].astype(int))
     assert 0.02 < red.mean() < 0.5
     assert picture[red].std(axis=0)[0] > 5  # it is lit from a side
 
 
-def test_faults_harm_and_requests_would_be_seen(tmp_path):
+def test_faults_harm_and_requests_would_be_seen(tmp_path, browser):
     """The same eyes on a page that has them all."""
     body = (
         '<img src="http://example.org/a.png"><script src="https://example.com/a.js"></script><script>fault()</script>'
     )
-    said, asked, _ = visit(wrap_page("page", body + "".join(HOSTILE[:2])), tmp_path)
+    said, asked, _ = visit(browser, wrap_page("page", body + "".join(HOSTILE[:2])), tmp_path)
     assert {"http://example.org/a.png", "https://example.com/a.js"} <= asked
     assert said.count("harm") == 2 and any("fault is not defined" in message for message in said)

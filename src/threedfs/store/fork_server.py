@@ -20,6 +20,7 @@ import subprocess
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import NoReturn
 
 from threedfs.store.workers import FORKED, ONE_THREAD, die_with_parent
 
@@ -254,8 +255,22 @@ def main(address: str, parent: str) -> None:
         signal.signal(number, signal.SIG_IGN)  # the parent decides
     _import_libraries()
     order = serve(address)
-    sys.path[0] = os.path.dirname(order.argv[0])
-    runpy.run_path(order.argv[0], run_name="__main__")
+    _run(order.argv[0])
+
+
+def _run(script: str) -> NoReturn:
+    """Run a script and end as it does, but leave the libraries: to take them apart takes longer than many jobs work."""
+    sys.path[0] = os.path.dirname(script)
+    status = 0
+    try:
+        runpy.run_path(script, run_name="__main__")
+    except SystemExit as end:
+        if not isinstance(end.code, int | None):  # a sentence
+            raise
+        status = end.code or 0
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)
 
 
 if __name__ == "__main__":
