@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
-from threedfs.keyframes.sectors import cluster_photos, score_frames, split_sequence
+from threedfs.keyframes.sectors import cluster_photos, divide_finely_enough, score_frames, split_sequence
 
 
 def test_score_follows_the_formula(make_ring):
@@ -66,3 +67,11 @@ def test_photos_without_points_end_the_clustering(make_ring):
     np.testing.assert_array_equal(np.bincount(cluster_photos(score, 1.0)), 12 * [1])
     # A diagonal that is not zero must not keep it going either.
     assert cluster_photos(score + 9 * np.eye(12), 1.0).max() <= 11
+
+
+@pytest.mark.parametrize(("count", "frames"), [(12, 4), (18, 4), (24, 3), (30, 2), (60, 2)])
+def test_sectors_shorten_until_there_are_as_many_as_asked_for(make_ring, count, frames):
+    """Exact: 72 frames make 18 sectors of 4; the score of a third of the threshold is passed after 2."""
+    score = score_frames(make_ring(count=72).visibility, 16.0, 9.0)
+    sector = divide_finely_enough(split_sequence, score, 1.0, 0.35, count)
+    np.testing.assert_array_equal(np.bincount(sector), 72 // frames * [frames])

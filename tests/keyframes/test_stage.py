@@ -55,6 +55,12 @@ def test_keyframes_are_written_in_order(run_stage):
         assert 0.55 * 0.97 < entry.near < 0.55 * 1.1 and 1.2 * 1.06 < entry.far < 1.2 * 1.19
 
 
+@pytest.mark.parametrize(("least", "count"), [(1.0, 18), (0.25, 24)])
+def test_sectors_are_shortened_to_reach_the_number_asked_for(run_stage, least, count):
+    """Exact: 72 frames make 18 sectors by the score, and 24 shorter ones."""
+    assert len(read_keyframes(run_stage(max_keyframes=24, least_keyframe_score=least))) == count
+
+
 def test_annotated_frames_are_keyframes(run_stage, tmp_path):
     """Exact: masks are found by frame number whatever the zeros, and count."""
     for number in (30, 350):

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from threedfs.keyframes.visibility import Visibility
+
+_FINER = 0.85
+"""From one threshold to the next: sectors of a video become 8 % shorter, as the score grows with the distance squared."""
 
 
 def score_frames(visibility: Visibility, distance_weight: float, usage_weight: float) -> np.ndarray:
@@ -57,6 +62,40 @@ def split_sequence(score: np.ndarray, threshold: float) -> np.ndarray:
         starts = score[first, frame] > threshold
         sector[frame] = sector[frame - 1] + starts
         first = frame if starts else first
+    return sector
+
+
+def divide_finely_enough(
+    divide: Callable[[np.ndarray, float], np.ndarray], score: np.ndarray, threshold: float, least: float, count: int
+) -> np.ndarray:
+    """Divide frames into sectors, and by lower thresholds while those are fewer than asked for.
+
+    Parameters
+    ----------
+    divide : callable
+        `split_sequence` or `cluster_photos`.
+    score : (F, F) float64
+        As `score_frames` gives it.
+    threshold, least : float
+        The first, and the lowest.
+    count : int
+        Sectors asked for.
+
+    Returns
+    -------
+    (F,) int64
+        Sector of each frame.
+
+    Examples
+    --------
+    >>> score = np.abs(np.subtract.outer(range(6), range(6)))
+    >>> divide_finely_enough(split_sequence, score, 2.0, 0.5, 3)
+    array([0, 0, 1, 1, 2, 2])
+    """
+    sector = divide(score, threshold)
+    while len(np.unique(sector)) < count and threshold > least:
+        threshold = max(threshold * _FINER, least)
+        sector = divide(score, threshold)
     return sector
 
 

@@ -21,6 +21,11 @@ class KeyframesParams:
         minimum=0.0,
     )
     new_keyframe_score: float = parameter(1.0, "score above which a viewing sector ends", exclusive_minimum=0.0)
+    least_keyframe_score: float = parameter(
+        0.25,
+        "the same, lowered to no less than this, where there would be fewer sectors than `max_keyframes`",
+        exclusive_minimum=0.0,
+    )
     max_keyframes: int = parameter(
         24,
         "number of keyframes aimed at; with `keyframes_at_truth`, frames with a true mask are kept and count",

@@ -17,7 +17,7 @@ from threedfs.io.poses import read_poses
 from threedfs.job import Job
 from threedfs.keyframes.depth_range import LEAST_POINTS, expect_depth_range
 from threedfs.keyframes.neighbours import NeighbourRule, choose_neighbours
-from threedfs.keyframes.sectors import cluster_photos, score_frames, split_sequence
+from threedfs.keyframes.sectors import cluster_photos, divide_finely_enough, score_frames, split_sequence
 from threedfs.keyframes.selection import choose_keyframes, viewing_directions
 from threedfs.keyframes.visibility import find_visibility
 from threedfs.params.keyframes import KeyframesParams
@@ -64,10 +64,17 @@ def run(
             "check that the given cameras belong to these frames."
         )
     score = score_frames(visibility, params.distance_weight, params.usage_weight)
-    divide = split_sequence if store.ordered else cluster_photos
+    missing = params.max_keyframes - int(annotated[usable].sum())
+    sector = divide_finely_enough(
+        split_sequence if store.ordered else cluster_photos,
+        score[np.ix_(usable, usable)],
+        params.new_keyframe_score,
+        min(params.least_keyframe_score, params.new_keyframe_score),
+        params.max_keyframes if missing > 0 else 0,
+    )
     sharpness = dict(zip(store.names, store.sharpness, strict=True))
     chosen = choose_keyframes(
-        sector=divide(score[np.ix_(usable, usable)], params.new_keyframe_score),
+        sector=sector,
         directions=viewing_directions([views[frame] for frame in usable], visibility.xyz),
         sharpness=np.array([sharpness[names[frame]] for frame in usable]),
         forced=annotated[usable],
