@@ -121,6 +121,14 @@ CASES = {
         "sequences: {a: {source: config, truth: {masks: lost}}}",
         "sequences.a.truth.masks: expected a file or folder, found no lost",
     ),
+    "path with a variable of Snakemake": (
+        'sequences: {a: {source: "film <results>.mp4"}}',
+        "sequences.a.source: expected a path without <results>, which Snakemake would replace",
+    ),
+    "path with a wildcard of Snakemake": (
+        'sequences: {a: {source: config, truth: {masks: "{sequence} masks"}}}',
+        "sequences.a.truth.masks: expected a path without {sequence}, which Snakemake would replace",
+    ),
     "video with a space": ("video: config/my mug.mp4", "found no config/my mug.mp4"),
 }
 

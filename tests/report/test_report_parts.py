@@ -196,5 +196,6 @@ def test_what_comes_from_a_user_is_only_text():
 
 def test_a_page_of_a_run_that_came_nowhere_has_its_sentence():
     page = write_page(Report("mug", failures=("poses: the camera hardly moves.",)))
+    assert "its place" not in page
     assert "the camera hardly moves" in page
     assert "<h2>Keyframes" not in page and "<h2>Figures" not in page

@@ -10,7 +10,7 @@ from threedfs.store.digests import digest_value
 from threedfs.store.records import IDENTITY, record_path, write_record
 
 LOGS = {
-    "mug/logs/poses.log": "poses of mug: at work\nthreedfs: poses of mug: poses: expected motion: got none.\n",
+    "mug/logs/poses.log": "poses of mug: at work\nthreedfs: poses of mug: expected motion: got none.\n",
     "mug/logs/depth/000010.log": "depth of mug 000010: at work\n",
     "can/logs/object/fused_sdf.log": "Traceback (most recent call last):\n  File\nIndexError: 3\n",
     "can/logs/frames.log": "frames of can: done in 1.0 s\naction abcd\n",

@@ -94,18 +94,26 @@ def test_of_two_videos_only_the_one_that_ended_well_is_announced(call, project, 
     assert f"report   {tmp_path}/results/mug/report.html" in output
 
 
+def test_a_name_that_snakemake_would_change_is_refused_in_one_sentence(call, tmp_path):
+    (tmp_path / "a-b <results>.mp4").write_text("film")
+    status, output = call("run", "./a-b <results>.mp4")
+    assert status == 1
+    assert "source: expected a path without <results>" in output.rstrip().splitlines()[-1]
+
+
 def test_a_job_that_fails_ends_in_its_sentence(call, project, tmp_path):
     (tmp_path / "mug.mp4").write_text("film")
     project.edit(
         "src/threedfs/stages/poses.py",
         "    write(",
-        f"    from threedfs.errors import UserError\n    raise UserError({STATIC!r})\n    write(",
+        f"    from threedfs.errors import UserError\n    raise UserError({f'poses: {STATIC}'!r})\n    write(",
     )
     (tmp_path / "results/mug/11_object/fused_sdf").mkdir(parents=True)
     (tmp_path / "results/mug/11_object/fused_sdf/mesh.ply").write_text("of an earlier run")
     status, output = call("run", "mug.mp4")
     assert status == 1 and "mesh.ply" not in output and "time " not in output
     assert output.rstrip().splitlines()[-1] == f"threedfs: poses of mug: {STATIC}"
+    assert output.count(STATIC) == 1
     assert "camera hardly moves" in (tmp_path / "results/mug/report.html").read_text()
 
 

@@ -25,7 +25,7 @@ from threedfs.errors import UserError
 
 _PATIENCE = 15.0
 """Seconds that a run has to end by itself after it was interrupted."""
-_FAULT = re.compile(r"threedfs: (\w+ of |configuration|[\w.]+: )")
+_FAULT = re.compile(r"threedfs: (\w+ of |configuration|[\w.-]+: )")
 
 
 @dataclass(frozen=True)

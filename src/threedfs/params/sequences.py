@@ -26,6 +26,8 @@ _FILES = (*SEQUENCE_FILES, "keyframe_masks")
 
 RUN_FILES = {"README.md", "benchmarks", "index.html", "logs", "metrics.csv", "plots", "tables"}
 
+_REPLACED = re.compile(r"<[a-z][a-z0-9_]*>|\{[^{}]+\}")
+"""What Snakemake replaces in every path, and cannot be told to leave: path variables and wildcards."""
 _DEPTH_SCALE = 1000.0  # levels of a true depth image in a metre: millimetres
 
 
@@ -46,8 +48,8 @@ def load_sequences(
     Raises
     ------
     UserError
-        If also the depth experiment names a sequence that cannot take part, nothing is to be done with one, or a truth
-        lacks the cameras that say where it lies.
+        If also the depth experiment names a sequence that cannot take part, nothing is to be done with one, a path holds
+        what Snakemake replaces, or a truth lacks the cameras that say where it lies.
     """
     check_configuration(config, configuration_schema())
     sequences = list_sequences(config, home, lambda sentence: notes and notes.write(f"threedfs: {sentence}\n"))
@@ -55,6 +57,7 @@ def load_sequences(
     _check_known("depth_experiment.sequences", tried, named)
     _check_known("evaluate.cylinder_sequences", config["evaluate"]["cylinder_sequences"], named)
     _check_tried(sequences, tried)
+    _check_paths(sequences)
     _check_truth(sequences)
     _check_scales(sequences, config["methods"])
     return set_aside_missing({name: {**entry, "depth_experiment": name in tried} for name, entry in sequences.items()})
@@ -169,6 +172,17 @@ def _check_tried(sequences: Mapping[str, dict[str, Any]], tried: list[str]) -> N
                 f"sequences.{name}: expected its name in depth_experiment.sequences, as object: false leaves nothing "
                 "else to do, found it missing; add it there."
             )
+
+
+def _check_paths(sequences: Mapping[str, dict[str, Any]]) -> None:
+    for name, entry in sequences.items():
+        for key in SEQUENCE_FILES:
+            found = _REPLACED.search(entry[key] or "")
+            if found:
+                raise UserError(
+                    f"sequences.{name}.{key.replace('truth_', 'truth.')}: expected a path without {found[0]}, which "
+                    f"Snakemake would replace by something else, got {entry[key]}; rename it."
+                )
 
 
 def _check_truth(sequences: Mapping[str, dict[str, Any]]) -> None:

@@ -69,7 +69,7 @@ def write_page(report: Report) -> str:
         _section("Size", f"<p>{html.escape(report.size)}</p>" if report.size else ""),
         _list_files(report.files),
         _show_keyframes(report.keyframes),
-        _section("Where the camera went", report.path, _tell_left_out(report.left_out)),
+        _section("Where the camera went", report.path, _tell_left_out(report.left_out) if report.path else ""),
         _tell_scores(report.scores),
         _tell_costs(report.costs),
         _section("Settings that differ from the defaults", lay_out_rows(("setting", "value"), report.settings.items())),

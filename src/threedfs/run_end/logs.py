@@ -100,7 +100,7 @@ def _read_refusal(line: str, sequence: str, item: str) -> Failure:
     """Read `STAGE of SEQUENCE ITEM: sentence`; what the log's place tells of the item goes before."""
     label, _, sentence = line.partition(": ")
     stage, _, what = label.partition(" of ")
-    return Failure(sequence, stage, item or what.partition(" ")[2], sentence.removeprefix(f"{stage}: "))
+    return Failure(sequence, stage, item or what.partition(" ")[2], sentence)
 
 
 def _explain(lines: list[str], log: Path) -> str:

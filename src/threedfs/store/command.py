@@ -158,10 +158,15 @@ def run_keyframes(
         for fault, names in faults.items():
             others = f" and {len(names) - 1} more" if len(names) > 1 else ""
             label = f"{fault.stage or rule} of {sequence} {names[0]}{others}"
-            told = f"threedfs: {label}: {fault.sentence}" if fault.sentence else f"{label}:\n{fault.trace.rstrip()}"
+            told = f"threedfs: {label}: {_strip(fault.sentence, label)}" if fault.sentence else f"{label}:\n{fault.trace.rstrip()}"
             print(told, file=streams)
     if faults:
         sys.exit(1)
+
+
+def _strip(sentence: str, label: str) -> str:
+    """Return a sentence without the stage before it, which the label tells."""
+    return sentence.removeprefix(f"{label.partition(' of ')[0]}: ")
 
 
 def _gather_faults(found: Mapping[str, Passage]) -> dict[Fault, list[str]]:
@@ -191,7 +196,7 @@ def _logged(log: Path, label: str) -> Iterator[tuple[TextIO, Tee]]:
         try:
             yield file, streams
         except UserError as fault:
-            print(f"threedfs: {label}: {fault}", file=streams)
+            print(f"threedfs: {label}: {_strip(str(fault), label)}", file=streams)
             sys.exit(1)
         except OSError as fault:
             if fault.errno not in _NO_ROOM:
