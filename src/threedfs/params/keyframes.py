@@ -22,8 +22,8 @@ class KeyframesParams:
     )
     new_keyframe_score: float = parameter(1.0, "score above which a viewing sector ends", exclusive_minimum=0.0)
     least_keyframe_score: float = parameter(
-        0.25,
-        "the same, lowered to no less than this, where there would be fewer sectors than `max_keyframes`",
+        1.0,
+        "what that score is lowered to at most where there are fewer sectors than `max_keyframes`",
         exclusive_minimum=0.0,
     )
     max_keyframes: int = parameter(
