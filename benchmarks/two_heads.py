@@ -28,7 +28,6 @@ from threedfs.store.audit import audit_results, audit_store
 from threedfs.store.records import read_record
 
 ROOT = Path(__file__).resolve().parents[1]
-MOST = 2  # computations of an action
 SEQUENCES = """\
 dataset: heads
 methods: [fused_sdf, gc_2d3d_pixel, surface]
@@ -42,7 +41,7 @@ SEQUENCE = """\
     truth: {{masks: {sample}/masks, cameras: {sample}/cameras.json, mesh: {sample}/mesh.ply}}
     settings: {{frames: {{max_frames: {frames}}}}}
 """
-_CREATED = 0x100  # IN_CREATE of inotify
+_CREATED, _LOST = 0x100, 0x4000  # IN_CREATE and IN_Q_OVERFLOW of inotify
 _HEADER = struct.Struct("iIII")  # which watch, what happened, cookie, length of the name
 _WORK = re.compile(r"\.([0-9a-f]{64})\..*\.part")
 
@@ -65,7 +64,9 @@ class NewFolders:
             except BlockingIOError:
                 return names
             while told:
-                length = _HEADER.unpack_from(told)[3]
+                _, happened, _, length = _HEADER.unpack_from(told)
+                if happened & _LOST:
+                    raise OSError("expected to be told of every new folder, but Linux has left some out; wait less")
                 names.append(os.fsdecode(told[_HEADER.size : _HEADER.size + length].rstrip(b"\0")))
                 told = told[_HEADER.size + length :]
 
@@ -81,19 +82,11 @@ def main() -> int:
         folder, store = Path(name), Path(name) / "store"
         (store / "scratch").mkdir(parents=True)
         heads = [_make_checkout(folder / head, store, arguments.sequences) for head in ("first", "second")]
-        new = NewFolders(store / "scratch")
-        started, running, begun = time.monotonic(), [], Counter()
-        for number, head in enumerate(heads):
-            time.sleep(arguments.delay * number)
-            running.append(_start(head, arguments.cores))
-        while any(run.poll() is None for run in running):
-            begun.update(_actions(new))
-            time.sleep(0.1)
-        begun.update(_actions(new))
+        started = time.monotonic()
+        begun, ended = _run_all(heads, NewFolders(store / "scratch"), arguments.cores, arguments.delay)
         seconds = time.monotonic() - started
-        faults = [f"{head.folder.name} ended with status {run.returncode}" for head, run in zip(heads, running)]
-        faults = [fault for fault, run in zip(faults, running) if run.returncode]
-        faults += [f"action {key} was begun {count} times" for key, count in begun.items() if count > MOST]
+        faults = [f"{head.folder.name} ended with status {end}" for head, end in zip(heads, ended, strict=True) if end]
+        faults += [f"action {key} was begun {count} times" for key, count in begun.items() if count > 1]
         first, second = (head.artifacts() for head in heads)
         faults += [f"{name} differs" for name in compare(first, second)]
         audit = audit_store(store)
@@ -103,6 +96,26 @@ def main() -> int:
         _print_figures(heads, store, begun, audit, seconds, len(first))
     print(*faults, f"faults: {len(faults)}", sep="\n")
     return 1 if faults else 0
+
+
+def _run_all(heads, new: NewFolders, cores: int, delay: float) -> tuple[Counter, list[int]]:
+    """Run heads side by side; return how often each action was begun, and their exit statuses."""
+    running, begun = [], Counter()
+    try:
+        for head in heads:
+            running.append(_start(head, cores))
+            if len(running) < len(heads):
+                time.sleep(delay)
+        while any(run.poll() is None for run in running):
+            begun.update(_actions(new))
+            time.sleep(0.1)
+        begun.update(_actions(new))
+    finally:
+        for run in running:
+            if run.poll() is None:
+                run.terminate()
+                run.wait()
+    return begun, [run.returncode for run in running]
 
 
 def _make_checkout(folder: Path, store: Path, sequences: int):
@@ -136,7 +149,7 @@ def _print_figures(heads, store: Path, begun: Counter, audit, seconds: float, fi
         log = (head.folder / "run.log").read_text()
         done, taken = log.count(": done in "), log.count(": taken from the store")
         waited = len(re.findall(r"waits for .* which does the same work", log))
-        print(f"{head.folder.name}: {done} times done, {taken} times taken from the store, {waited} times waited")
+        print(f"{head.folder.name}: {done} jobs and keyframes done, {taken} taken from the store, {waited} waited for")
     times = Counter(begun.values())
     for count, actions in sorted(times.items()):
         print(f"{actions} actions computed {count} times")

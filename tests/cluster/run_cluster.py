@@ -78,7 +78,7 @@ class Project:
         return self.folder if self.stubs else ROOT
 
     def prepare(self, sequences: int, store: str = "results/.store", kernels: Path | None = None) -> None:
-        """Write the configuration, and give the store kernels that are compiled."""
+        """Write the configuration; copy compiled kernels into the store, if there are any."""
         if self.stubs:
             _load_stand_ins().make_project(self.folder)
             self.environment |= {"PYTHONPATH": f"{self.folder / 'src'}:{self.environment['PYTHONPATH']}"}
@@ -237,7 +237,7 @@ def report(slurm: PrivateSlurm, project: Project, seconds: float) -> None:
     for record in records:
         print(*(record.get(name, "") for name in ("JobId", "JobState", "StartTime", "EndTime", "NodeList", "Tres")))
     failed = any(record["JobState"] != "COMPLETED" for record in records)
-    # those of failed jobs are kept, and of all in arrays
+    # Slurm's plugin keeps the logs of failed jobs, and of all jobs in arrays
     for said in sorted((project.folder / ".snakemake/slurm_logs").rglob("*.log")) if failed else ():
         print(f"--- {said.name}:", *said.read_text().splitlines()[-40:], sep="\n    ")
     log = project.log()

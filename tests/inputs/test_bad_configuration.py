@@ -133,6 +133,9 @@ CASES = {
 }
 
 
+PLAIN = ("film {1-2}.mp4", "film {a b}.mp4", "film {}.mp4", "film <1>.mp4")
+
+
 def merge(text: str) -> dict:
     """Lay a configuration over the defaults, as Snakemake does."""
     config = yaml.safe_load((ROOT / "config/config.yaml").read_text())
@@ -150,6 +153,14 @@ def test_configurations_that_cannot_be_meant(case, monkeypatch):
         _, missing = load_sequences(merge(text), ROOT)
         raise UserError(" ".join(missing.values()))
     assert words in str(fault.value) and "\n" not in str(fault.value) and len(str(fault.value)) < 1000
+
+
+@pytest.mark.parametrize("name", PLAIN)
+def test_names_that_snakemake_leaves_are_taken(name, monkeypatch, tmp_path):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / name).touch()
+    sequences, missing = load_sequences(merge(f"sequences: {{a: {{source: '{name}'}}}}"), ROOT)
+    assert sequences["a"]["source"] == name and not missing
 
 
 @pytest.mark.parametrize(

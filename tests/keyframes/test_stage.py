@@ -58,7 +58,20 @@ def test_keyframes_are_written_in_order(run_stage):
 @pytest.mark.parametrize(("least", "count"), [(1.0, 18), (0.25, 24)])
 def test_sectors_are_shortened_to_reach_the_number_asked_for(run_stage, least, count):
     """Exact: 72 frames make 18 sectors by the score, and 24 shorter ones."""
-    assert len(read_keyframes(run_stage(max_keyframes=24, least_keyframe_score=least))) == count
+    assert len(read_keyframes(run_stage(max_keyframes=24, least_score_share=least))) == count
+
+
+def test_a_higher_score_has_fewer_sectors(run_stage):
+    """Property: it is not lowered unless that is asked for."""
+    assert len(read_keyframes(run_stage(max_keyframes=24, new_keyframe_score=4.0, max_gap=180.0))) < 18
+
+
+def test_enough_annotated_frames_are_the_only_keyframes(run_stage, tmp_path):
+    """Exact: no sector is made for what is not needed."""
+    for number in (30, 350):
+        write_mask(tmp_path / "masks" / f"{number}.png", np.zeros((4, 4), bool))
+    given = {"masks": tmp_path / "masks", "max_keyframes": 2, "max_gap": 180.0}
+    assert list(read_keyframes(run_stage(**given, least_score_share=0.01))) == ["000030", "000350"]
 
 
 def test_annotated_frames_are_keyframes(run_stage, tmp_path):

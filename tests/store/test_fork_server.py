@@ -110,6 +110,18 @@ def test_it_ends_as_the_fork_ends(head, ask, body, status, told):
     assert bool(told) == bool(err)
 
 
+def test_a_fork_does_what_is_left_for_its_end_but_does_not_take_modules_apart(head, ask):
+    body = """
+import atexit, builtins
+class Late:
+    def __del__(self, write=os.write):
+        write(1, b"apart")
+builtins.late = Late()
+atexit.register(print, "kept")
+"""
+    assert ask(head[1], body).communicate(timeout=60)[0] == "kept\n"
+
+
 def test_scripts_run_side_by_side(head, ask, tmp_path):
     first = ask(head[1], "import time\nwhile not os.path.exists('go'): time.sleep(0.01)")
     second = ask(head[1], "open('go', 'w').close()")

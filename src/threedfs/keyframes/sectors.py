@@ -9,7 +9,7 @@ import numpy as np
 from threedfs.keyframes.visibility import Visibility
 
 _FINER = 0.85
-"""From one threshold to the next: sectors of a video become 8 % shorter, as the score grows with the distance squared."""
+"""From one threshold to the next; the score grows with the distance squared, so sectors become 8 % shorter."""
 
 
 def score_frames(visibility: Visibility, distance_weight: float, usage_weight: float) -> np.ndarray:

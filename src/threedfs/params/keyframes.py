@@ -21,10 +21,12 @@ class KeyframesParams:
         minimum=0.0,
     )
     new_keyframe_score: float = parameter(1.0, "score above which a viewing sector ends", exclusive_minimum=0.0)
-    least_keyframe_score: float = parameter(
+    least_score_share: float = parameter(
         1.0,
-        "what that score is lowered to at most where there are fewer sectors than `max_keyframes`",
+        "share of `new_keyframe_score` down to which it is lowered while there are fewer sectors than `max_keyframes`; "
+        "1 never lowers it",
         exclusive_minimum=0.0,
+        maximum=1.0,
     )
     max_keyframes: int = parameter(
         24,

@@ -26,7 +26,7 @@ _FILES = (*SEQUENCE_FILES, "keyframe_masks")
 
 RUN_FILES = {"README.md", "benchmarks", "index.html", "logs", "metrics.csv", "plots", "tables"}
 
-_REPLACED = re.compile(r"<[a-z][a-z0-9_]*>|\{[^{}]+\}")
+_REPLACED = re.compile(r"<[a-z][a-z0-9_]*>|\{\s*[.\w]+\s*(?:,[^{}]*(?:\{\d+(?:,\d+)?\}[^{}]*)*)?\}")
 """What Snakemake replaces in every path, and cannot be told to leave: path variables and wildcards."""
 _DEPTH_SCALE = 1000.0  # levels of a true depth image in a metre: millimetres
 
@@ -48,8 +48,8 @@ def load_sequences(
     Raises
     ------
     UserError
-        If also the depth experiment names a sequence that cannot take part, nothing is to be done with one, a path holds
-        what Snakemake replaces, or a truth lacks the cameras that say where it lies.
+        If also the depth experiment names a sequence that cannot take part, nothing is to be done with one, a path
+        holds what Snakemake replaces, or a truth lacks the cameras that say where it lies.
     """
     check_configuration(config, configuration_schema())
     sequences = list_sequences(config, home, lambda sentence: notes and notes.write(f"threedfs: {sentence}\n"))

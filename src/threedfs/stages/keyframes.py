@@ -64,13 +64,13 @@ def run(
             "check that the given cameras belong to these frames."
         )
     score = score_frames(visibility, params.distance_weight, params.usage_weight)
-    missing = params.max_keyframes - int(annotated[usable].sum())
+    enough = annotated[usable].sum() >= params.max_keyframes  # frames with a mask alone
     sector = divide_finely_enough(
         split_sequence if store.ordered else cluster_photos,
         score[np.ix_(usable, usable)],
         params.new_keyframe_score,
-        min(params.least_keyframe_score, params.new_keyframe_score),
-        params.max_keyframes if missing > 0 else 0,
+        params.least_score_share * params.new_keyframe_score,
+        0 if enough else params.max_keyframes,
     )
     sharpness = dict(zip(store.names, store.sharpness, strict=True))
     chosen = choose_keyframes(

@@ -158,7 +158,11 @@ def run_keyframes(
         for fault, names in faults.items():
             others = f" and {len(names) - 1} more" if len(names) > 1 else ""
             label = f"{fault.stage or rule} of {sequence} {names[0]}{others}"
-            told = f"threedfs: {label}: {_strip(fault.sentence, label)}" if fault.sentence else f"{label}:\n{fault.trace.rstrip()}"
+            told = (
+                f"threedfs: {label}: {_strip(fault.sentence, label)}"
+                if fault.sentence
+                else f"{label}:\n{fault.trace.rstrip()}"
+            )
             print(told, file=streams)
     if faults:
         sys.exit(1)

@@ -6,6 +6,7 @@ Needs Linux: elsewhere none is started.
 
 from __future__ import annotations
 
+import atexit
 import contextlib
 import importlib
 import json
@@ -268,6 +269,7 @@ def _run(script: str) -> NoReturn:
         if not isinstance(end.code, int | None):  # a sentence
             raise
         status = end.code or 0
+    atexit._run_exitfuncs()  # what the script's modules have asked for, as that a folder is removed
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(status)
