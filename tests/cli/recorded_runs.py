@@ -67,17 +67,17 @@ RUNS = {
         evaluate:172 texture:174 photographs:178
         """,
     ),
-    "sample, draft": Recorded(
+    "phone video, draft": Recorded(
         "draft",
         False,
-        Size(72, 12, 80000),
-        100,
+        Size(71, 12, 80293),
+        46,
         [],
         """
-        frames:4 features:8 poses:18 keyframes:20 shrink:23 scout:27 depth:34 consistency:37 fuse_scene:40
-        locate:43 crops:46 cues:54 depth:61 evaluate_reconstruction:64 consistency:68 fuse_object:71
-        locate_object:73 segment:80 pixel_masks:82 evaluate:84 surface:93 evaluate:97 texture:97
-        photographs:100
+        frames:5 features:8 poses:14 keyframes:15 shrink:16 scout:17 depth:19 consistency:20 fuse_scene:21
+        locate:22 crops:25 cues:27 depth:30 consistency:31 fuse_object:33 locate_object:33
+        evaluate_reconstruction:33 segment:36 surface:39 evaluate:40 texture:41 photographs:42 scale:42
+        pixel_masks:43 evaluate:43
         """,
     ),
     "sample, fine, cameras from the store": Recorded(
@@ -104,6 +104,19 @@ RUNS = {
         locate:93 crops:113 cues:130 depth:184 evaluate_reconstruction:186 consistency:198 fuse_object:206
         locate_object:208 segment:230 surface:270 evaluate:277 pixel_masks:277 evaluate:279 cut_object:282
         texture:289 evaluate:290 photographs:300
+        """,
+    ),
+    "phone video, jobs that end at once": Recorded(
+        "normal",
+        False,
+        Size(142, 24, 400620),
+        147,
+        [],
+        """
+        frames:7 features:13 poses:25 keyframes:26 shrink:28 scout:31 depth:38 consistency:40 fuse_scene:42
+        locate:51 crops:55 cues:64 depth:94 consistency:100 fuse_object:104 evaluate_reconstruction:104
+        locate_object:105 segment:116 surface:131 evaluate:133 texture:136 pixel_masks:137 evaluate:137
+        photographs:139 scale:139 cut_object:141 evaluate:142
         """,
     ),
     "phone video, idle machine": Recorded(

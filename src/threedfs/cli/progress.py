@@ -13,11 +13,11 @@ from typing import TextIO
 
 from threedfs.cli.costs import Costs, Size
 
-_TRUST = 10.0
+_TRUST = 5.0
 """Seconds of work that the costs known before weigh as much as, beside the speed seen in the run."""
 _EARLIEST = 0.04
 """Share of the work after which the time that is left is told."""
-_TAKEN = 1.0
+_TAKEN = 0.5
 """Seconds of a job that finds its results in the store."""
 _UNCOUNTED = ("all", "collect")
 
