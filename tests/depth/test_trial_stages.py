@@ -146,7 +146,7 @@ def test_parameters_change_the_maps_of_the_priors_and_not_the_baseline(scene, ma
 
 def test_refuses_a_keyframe_without_true_depth_or_with_too_few(scene, tmp_path):
     (tmp_path / "depth").mkdir()
-    with pytest.raises(UserError, match="got 0 of which none belongs to a keyframe"):
+    with pytest.raises(UserError, match="got 0 of which none belongs to a frame"):
         work(scene, tmp_path, depth_truth=tmp_path / "depth")
     image = np.zeros(scenes.CAMERA.shape, np.uint16)
     image[:5, :5] = 9000

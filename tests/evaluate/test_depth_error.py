@@ -113,7 +113,7 @@ def test_depth_images_are_of_the_scale_given(tmp_path):
 
 
 def test_refuses_depth_images_that_are_none(tmp_path):
-    with pytest.raises(UserError, match="none belongs to a keyframe"):
+    with pytest.raises(UserError, match="none belongs to a frame"):
         find_depth_images(tmp_path, ["000010"])
     cv2.imwrite(str(tmp_path / "a.depth.png"), np.zeros((2, 2, 3), np.uint8))
     with pytest.raises(UserError, match="one channel of 16-bit depths, got uint8"):

@@ -112,6 +112,14 @@ def test_depth_images_in_metres(finished, scale):
     assert found["scene_depth_covered"] == 100
 
 
+def test_depth_images_of_other_frames_than_keyframes_are_left_out(finished):
+    folder = finished.folder / "depth_of_others"
+    folder.mkdir()
+    (folder / "999999.depth.png").touch()
+    names = finished.score(depth_truth=folder, depth_scale=1000.0)
+    assert "frames_posed" in names and not any(name.startswith("scene_depth") for name in names)
+
+
 def test_refuses_a_mask_of_the_wrong_size(finished):
     path = finished.inputs["masks_truth"] / "20.png"
     write_mask(path, read_mask(path)[::2, ::2])

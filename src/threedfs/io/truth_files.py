@@ -25,19 +25,19 @@ def match_depth_images(folder: Path, names: Iterable[str]) -> dict[str, Path]:
 
 
 def find_depth_images(folder: Path, names: Iterable[str]) -> dict[str, Path]:
-    """Find the depth image of every keyframe that has one, as `match_depth_images` does.
+    """Find the depth image of every frame that has one, as `match_depth_images` does.
 
     Raises
     ------
     UserError
-        If no depth image in the folder belongs to a keyframe.
+        If no depth image in the folder belongs to a frame.
     """
     found = match_depth_images(folder, names)
     if not found:
         count = len(list(Path(folder).glob("*depth.png")))
         raise UserError(
             f"{folder}: expected depth images named after frames (NAME.depth.png, or NAME-depth.png for a photo "
-            f"NAME-color), got {count} of which none belongs to a keyframe."
+            f"NAME-color), got {count} of which none belongs to a frame."
         )
     return found
 

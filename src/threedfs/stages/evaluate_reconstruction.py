@@ -21,7 +21,7 @@ from threedfs.io.keyframes import read_keyframes
 from threedfs.io.metrics import write_metrics
 from threedfs.io.poses import Poses, read_poses
 from threedfs.io.truth import read_true_depth
-from threedfs.io.truth_files import find_depth_images
+from threedfs.io.truth_files import match_depth_images
 from threedfs.job import Job
 from threedfs.params.evaluate_reconstruction import EvaluateReconstructionParams
 from threedfs.types import Keyframe, Mesh
@@ -61,8 +61,13 @@ def run(
         if mesh_truth is not None:
             figures += _score_depth_by_mesh(read_given_mesh(mesh_truth), maps, truth, selected, solved, params)
         if depth_truth is not None:
-            images = find_depth_images(depth_truth, selected)
-            figures += _score_depth_by_images(images, depth_scale, depth_camera, maps, truth, selected, solved, store)
+            images = match_depth_images(depth_truth, selected)
+            if images:
+                figures += _score_depth_by_images(
+                    images, depth_scale, depth_camera, maps, truth, selected, solved, store
+                )
+            else:
+                job.progress.note(f"no keyframe has a true depth in {depth_truth}: none is scored")
     write_metrics(
         metrics,
         [Metric(item.name, item.value, item.unit, dataset, sequence, keyframe=item.keyframe) for item in figures],
