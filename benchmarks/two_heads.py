@@ -22,12 +22,11 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from kills import compare, load_stand_ins
+from kills import ROOT, compare, load_stand_ins
 
 from threedfs.store.audit import audit_results, audit_store
 from threedfs.store.records import read_record
 
-ROOT = Path(__file__).resolve().parents[1]
 SEQUENCES = """\
 dataset: heads
 methods: [fused_sdf, gc_2d3d_pixel, surface]
