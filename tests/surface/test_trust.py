@@ -9,6 +9,7 @@ RULE = TrustRule(
     agree_from=2.0,
     agree_full=5.0,
     matched=0.01,
+    bare_matched=0.03,
     matched_from=0.1,
     matched_full=0.4,
     sure_from=0.5,
@@ -18,9 +19,9 @@ SHAPE = (40, 60)
 INSIDE = np.ones(SHAPE, bool)
 
 
-def rate(agree, confidence=1.0, photometric=0.0, mask=INSIDE, reach=5.0, rule=RULE):
+def rate(agree, confidence=1.0, photometric=0.0, mask=INSIDE, reach=5.0, rule=RULE, sureness=0.0):
     maps = (np.full(SHAPE, value, kind) for value, kind in ((agree, np.uint8), (confidence, np.float32)))
-    return trust_depth(*maps, np.broadcast_to(np.float32(photometric), SHAPE), mask, reach, rule)
+    return trust_depth(*maps, np.broadcast_to(np.float32(photometric), SHAPE), mask, reach, rule, sureness)
 
 
 @pytest.mark.parametrize(("agree", "trust"), [(0, 0.0), (2, 0.0), (3, 1 / 3), (5, 1.0), (9, 1.0)])
@@ -61,3 +62,10 @@ def test_sureness_rises_with_the_mean_trust_in_the_masks():
     assert rate_sureness([trust, trust], [left, none], RULE) == pytest.approx(0.5, abs=1e-6)
     assert rate_sureness([trust], [~none], RULE) == 0
     assert rate_sureness([np.ones((4, 6), np.float32)], [left], RULE) == 1
+
+
+def test_on_a_bare_object_matches_must_be_better():
+    """Exact: a match half way between the two, 0.015, counts from a sureness of 0.75 on."""
+    bare, sure = (rate(1, photometric=0.015, rule=RULE, sureness=sureness).max() for sureness in (0.0, 0.8))
+    assert bare == 0 < sure
+    assert rate(1, photometric=0.015, sureness=0.7).max() == 0

@@ -25,7 +25,15 @@ class SurfaceParams(SmoothingSettings):
     agree_full: float = parameter(8.0, "views that agree with a depth from which it is trusted fully", minimum=0.0)
     matched: float = parameter(
         0.01,
-        "photometric confidence from which the photographs of a pixel match",
+        "photometric confidence from which the photographs of a pixel match, on an object whose depth is sure",
+        equation="Eq. 11",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    bare_matched: float = parameter(
+        0.01,
+        "the same on a bare object, and to say how sure its depth is; the more candidates depth has, the more pixels "
+        "match by chance",
         equation="Eq. 11",
         minimum=0.0,
         maximum=1.0,

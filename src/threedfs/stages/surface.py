@@ -90,14 +90,16 @@ def run(
     def depth_of(name):
         return read_depth_map(paths[name]).depth
 
-    def trust_of(name):
+    def trust_of(name, sureness=0.0):
         said, matched = trust.read(name), read_depth_map(paths[name]).confidence
         length = read_object_pixels(keyframes, name) or measure_object([views[name]], corners) or 0.0
         reach = params.matched_reach * length
-        return trust_depth(said.agree, said.confidence, matched, cut.masks[name], reach, rule)
+        return trust_depth(said.agree, said.confidence, matched, cut.masks[name], reach, rule, sureness)
 
     own = dict(zip(views, map_ahead(trust_of, views, threads=job.threads), strict=True))
     sureness = rate_sureness(own.values(), (cut.masks[name] for name in own), rule)
+    if sureness > 0 and params.bare_matched != params.matched:
+        own = {name: trust_of(name, sureness) for name in own}
     voxel = cut.grid.spacing  # of the object's grid: settings of fuse_object count in its voxels
     share = 1 - sureness * (1 - params.sure_clip_share)
     clip = limit_clip_distance(

@@ -16,6 +16,7 @@ class TrustRule:
     agree_from: float
     agree_full: float
     matched: float
+    bare_matched: float
     matched_from: float
     matched_full: float
     sure_from: float
@@ -29,6 +30,7 @@ def trust_depth(
     mask: np.ndarray,
     reach: float,
     rule: TrustRule,
+    sureness: float = 0.0,
 ) -> np.ndarray:
     """Return the trust in a depth map, (H, W) float32 in [0, 1], by what other views and photographs say of it.
 
@@ -49,11 +51,15 @@ def trust_depth(
     reach : float
         Standard deviation of the neighbourhood, pixels.
     rule : TrustRule
+    sureness : float
+        Of the object's depth, in [0, 1] (`rate_sureness`); a mirror image matches, too, but seldom as well as a
+        texture does, so on a bare object matches must be better.
     """
     seen = _rise(agree.astype(np.float64), rule.agree_from, rule.agree_full)
     inside = mask.astype(np.float64)
     around = np.maximum(gaussian_filter(inside, reach), 1e-3)
-    share = gaussian_filter((photometric > rule.matched) * inside, reach) / around
+    least = rule.bare_matched + sureness * (rule.matched - rule.bare_matched)
+    share = gaussian_filter((photometric > least) * inside, reach) / around
     matched = _rise(share, rule.matched_from, rule.matched_full) * confidence
     return np.maximum(seen, matched).astype(np.float32)
 
@@ -67,7 +73,7 @@ def rate_sureness(trust: Iterable[np.ndarray], masks: Iterable[np.ndarray], rule
     Parameters
     ----------
     trust, masks : iterable of (H, W) float32, of (H, W) bool
-        Of each keyframe (`trust_depth`), and where it shows the object; one mask at least is not empty.
+        Of each keyframe, as of a bare object (`trust_depth`), and where it shows the object; one mask at least is not empty.
     rule : TrustRule
     """
     means = [own[mask].mean(dtype=np.float64) for own, mask in zip(trust, masks, strict=True) if mask.any()]
