@@ -39,10 +39,10 @@ def test_estimate_grows_with_the_grid_and_with_the_keyframes_that_are_held():
     assert estimate_memory("segment", 200, **BLOWTORCH) > estimate_memory("segment", 200, **TABLETOP)
 
 
-@pytest.mark.parametrize(("rule", "peak"), [("depth", 686), ("cues", 332), ("stereo", 260)])
-def test_estimate_holds_the_peak_of_a_keyframe_and_grows_with_those_at_work(rule, peak):
+@pytest.mark.parametrize(("rule", "candidates", "peak"), [("depth", 64, 686), ("cues", 0, 332), ("stereo", 0, 260)])
+def test_estimate_holds_the_peak_of_a_keyframe_and_grows_with_those_at_work(rule, candidates, peak):
     """Regression: the highest peaks at 640 x 480 pixels, MB."""
-    one, two, three = (estimate_memory_of_keyframes(rule, 640 * 480, at_once) for at_once in (1, 2, 3))
+    one, two, three = (estimate_memory_of_keyframes(rule, 640 * 480, at_once, candidates) for at_once in (1, 2, 3))
     assert peak < one < 4 * peak
     assert abs(three - two - (two - one)) <= 1
 
@@ -60,3 +60,10 @@ def test_every_attempt_asks_for_twice_the_memory():
     """Exact."""
     first, second, third = (grow_memory(1000, attempt) for attempt in (1, 2, 3))
     assert first > 1000 and (second, third) == (2 * first, 4 * first)
+
+
+def test_estimate_grows_with_the_depths_that_are_tried():
+    """Regression: the peaks of a keyframe of beer.mp4 with 64 and 256 candidates, MB."""
+    few, many = (estimate_memory_of_keyframes("depth", 529 * 842, 1, candidates) for candidates in (64, 256))
+    assert 586 < few and 932 < many < 4 * 932
+    assert 932 - 586 < many - few < 2 * (932 - 586)

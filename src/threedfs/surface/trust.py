@@ -73,7 +73,8 @@ def rate_sureness(trust: Iterable[np.ndarray], masks: Iterable[np.ndarray], rule
     Parameters
     ----------
     trust, masks : iterable of (H, W) float32, of (H, W) bool
-        Of each keyframe, as of a bare object (`trust_depth`), and where it shows the object; one mask at least is not empty.
+        Of each keyframe, as of a bare object (`trust_depth`), and where it shows the object; one mask at least is not
+        empty.
     rule : TrustRule
     """
     means = [own[mask].mean(dtype=np.float64) for own, mask in zip(trust, masks, strict=True) if mask.any()]
