@@ -261,14 +261,11 @@ def memory_of_keyframes(rule):
     """Return a resource function: the MB of a job that works on as many keyframes at once as it has threads."""
 
     def estimate(wildcards, threads, attempt):
-        candidates = (
-            settings_of("depth")(wildcards)["candidates"]
-            if rule in ("depth", "depth_trial")
-            else 0
-        )
-        needed = estimate_memory_of_keyframes(
-            rule, pixels_of_view(wildcards), threads, candidates
-        )
+        candidates = 0
+        if rule in ("depth", "depth_trial"):
+            candidates = settings_of("depth")(wildcards)["candidates"]
+        pixels = pixels_of_view(wildcards)
+        needed = estimate_memory_of_keyframes(rule, pixels, threads, candidates)
         return grow_memory(needed, attempt)
 
     return estimate
