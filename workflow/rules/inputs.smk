@@ -261,9 +261,8 @@ def memory_of_keyframes(rule):
     """Return a resource function: the MB of a job that works on as many keyframes at once as it has threads."""
 
     def estimate(wildcards, threads, attempt):
-        candidates = 0
-        if rule in ("depth", "depth_trial"):
-            candidates = settings_of("depth")(wildcards)["candidates"]
+        searched = rule in ("depth", "depth_trial")
+        candidates = settings_of("depth")(wildcards)["candidates"] if searched else 0
         pixels = pixels_of_view(wildcards)
         needed = estimate_memory_of_keyframes(rule, pixels, threads, candidates)
         return grow_memory(needed, attempt)
