@@ -83,14 +83,14 @@ RUNS = {
     "sample, fine, cameras from the store": Recorded(
         "fine",
         False,
-        Size(120, 24, 182474),
-        201,
+        Size(120, 24, 185723),
+        125,
         ["frames", "features", "poses"],
         """
-        frames:3 features:3 poses:4 keyframes:6 shrink:9 scout:16 depth:25 consistency:28 fuse_scene:33
-        locate:43 crops:47 cues:61 depth:77 evaluate_reconstruction:80 consistency:85 fuse_object:94
-        locate_object:96 segment:114 pixel_masks:117 evaluate:118 cut_object:123 evaluate:127 surface:188
-        evaluate:194 texture:197 photographs:201
+        frames:3 features:3 poses:4 keyframes:5 shrink:7 scout:11 depth:25 consistency:27 fuse_scene:30
+        locate:36 crops:38 cues:49 depth:80 consistency:84 fuse_object:87 evaluate_reconstruction:87
+        locate_object:88 segment:96 surface:113 evaluate:114 pixel_masks:116 evaluate:116 texture:117
+        photographs:119 cut_object:120 evaluate:121
         """,
     ),
     "phone video": Recorded(
@@ -130,6 +130,45 @@ RUNS = {
         locate:75 crops:85 cues:102 depth:154 evaluate_reconstruction:155 consistency:169 fuse_object:177
         locate_object:179 segment:199 surface:231 evaluate:235 pixel_masks:238 evaluate:240 cut_object:241
         evaluate:245 texture:249 photographs:254
+        """,
+    ),
+    "phone video, fine": Recorded(
+        "fine",
+        False,
+        Size(142, 24, 402235),
+        191,
+        [],
+        """
+        frames:8 features:13 poses:23 keyframes:24 shrink:26 scout:28 depth:42 consistency:43
+        fuse_scene:45 locate:52 crops:56 cues:64 depth:136 consistency:143 fuse_object:146
+        evaluate_reconstruction:147 locate_object:147 segment:158 surface:177 evaluate:178 texture:181
+        pixel_masks:182 evaluate:182 photographs:184 cut_object:185 evaluate:186
+        """,
+    ),
+    "phone video, faster machine": Recorded(
+        "normal",
+        False,
+        Size(142, 24, 401163),
+        138,
+        [],
+        """
+        frames:8 features:14 poses:24 keyframes:25 shrink:27 scout:29 depth:36 consistency:38
+        fuse_scene:40 locate:47 crops:51 cues:60 depth:88 consistency:94 fuse_object:98
+        evaluate_reconstruction:98 locate_object:99 segment:109 surface:125 evaluate:126 texture:129
+        pixel_masks:130 evaluate:130 photographs:132 cut_object:133 evaluate:134
+        """,
+    ),
+    "short phone video, draft": Recorded(
+        "draft",
+        False,
+        Size(71, 12, 84571),
+        48,
+        [],
+        """
+        frames:9 features:11 poses:18 keyframes:19 shrink:20 scout:21 depth:23 consistency:24
+        fuse_scene:25 locate:26 crops:29 cues:31 depth:34 consistency:35 fuse_object:36
+        evaluate_reconstruction:36 locate_object:36 segment:38 surface:42 evaluate:42 texture:43
+        photographs:44 pixel_masks:45 evaluate:45
         """,
     ),
 }

@@ -35,7 +35,8 @@ class Progress:
     """Follows the output of a run line by line.
 
     The time that is left is the cost of the jobs that are left, by their rule and the size of the input, over the speed
-    that the run has had so far; jobs that found their results in the store count for neither.
+    that the run has had so far; jobs that found their results in the store count for neither, and those whose time
+    varies with what the images show do not count for the speed.
 
     Parameters
     ----------
@@ -67,6 +68,7 @@ class Progress:
         self._parts: dict[str, dict[str, float]] = defaultdict(dict)  # of jobs under way, by rule and sequence
         self._taken: dict[str, list[bool]] = defaultdict(list)  # of what a rule's jobs have told, what was in the store
         self._sizes: dict[str, Size] = defaultdict(Size)
+        self._ended, self._aside = self._begun, 0.0  # when a job ended last; seconds that say nothing of the speed
         self._stage, self._listing = "starting", False
 
     @property
@@ -80,18 +82,25 @@ class Progress:
         done, left = self._weigh()
         if not done or done < _EARLIEST * (done + left):
             return None
-        return left * (_TRUST + self.elapsed) / (_TRUST + done)
+        steady, _ = self._weigh(steady=True)
+        aside = self._aside + (self._clock() - self._ended if self._costs.varies(self._stage) else 0.0)
+        return left * (_TRUST + self.elapsed - aside) / (_TRUST + steady)
 
     @property
     def elapsed(self) -> float:
         """Seconds since the run began."""
         return self._clock() - self._begun
 
-    def _weigh(self) -> tuple[float, float]:
-        """Return the cost of what is done and of what is left, seconds at the speed of the costs known before."""
+    def _weigh(self, steady: bool = False) -> tuple[float, float]:
+        """Return the cost of what is done and of what is left, seconds at the speed of the costs known before.
+
+        Steady: of jobs alone whose time tells the speed.
+        """
         done = left = 0.0
         size = self._size()
         for rule, count in self._planned.items():
+            if steady and self._costs.varies(rule):
+                continue
             worked = self._worked[rule]
             each = self._costs.expect(rule, max(count, len(worked)), size)
             done += sum(max(_TAKEN, cost * own) for cost, own in zip(each, worked, strict=False))
@@ -127,6 +136,10 @@ class Progress:
         told = self._taken.pop(rule, [])
         if rule in self._planned:
             self._worked[rule].append(1 - sum(told) / len(told) if told else 1.0)
+        now = self._clock()
+        if self._costs.varies(rule):
+            self._aside += now - self._ended
+        self._ended = now
         if parts := self._parts[rule]:
             del parts[max(parts, key=lambda part: parts[part])]
 
