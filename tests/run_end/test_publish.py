@@ -34,6 +34,25 @@ def test_tables_plots_and_figures_are_published(results, tmp_path, monkeypatch):
     assert (docs / "plots/iou_toys.svg").read_text() == "<svg/>"
 
 
+def test_figures_alone_leave_tables_and_plots_as_they_are(results, tmp_path):
+    docs = tmp_path / "docs"
+    publish(results, docs)
+    before = {path: path.read_bytes() for path in docs.rglob("*") if path.is_file() and path.suffix != ".csv"}
+    write_metrics(results / "metrics.csv", [Metric("iou_mean", 0.7, "1", "toys_printed", "mug", "fused_sdf")])
+    write_metrics(results / "benchmarks/costs.csv", [Metric("seconds", 9.0, "s", "toys_printed", "mug")])
+    (results / "tables/iou.md").write_text("### Newer\n")
+    (results / "plots/iou_toys.svg").unlink()
+    publish(results, docs, figures_only=True)
+    assert {path: path.read_bytes() for path in docs.rglob("*") if path.is_file() and path.suffix != ".csv"} == before
+    rows = read_metrics(docs / "results.csv")
+    assert {(row.dataset, row.value) for row in rows} == {
+        ("toys", 0.9),
+        ("toys", 3.0),
+        ("toys_printed", 0.7),
+        ("toys_printed", 9.0),
+    }
+
+
 def test_own_words_are_kept_and_the_rest_is_replaced(results, tmp_path):
     docs = tmp_path / "docs"
     publish(results, docs)

@@ -74,7 +74,8 @@ _INTRODUCTION = """\
 Values in your file replace the defaults; everything else keeps its default. `presets/paper.yaml` has the constants of
 the paper, `presets/quick.yaml` makes everything small. Several files can be given together; where they differ, the
 last one counts: `--configfile my.yaml config/presets/paper.yaml`. Sections are merged key by key, so a second file adds
-its sequences to those of the first; lists and single values are replaced. `benchmark.yaml` is the whole benchmark.
+its sequences to those of the first; lists and single values are replaced. `benchmark.yaml` is the whole benchmark,
+`printed.yaml` the paper's table with its constants.
 One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`. Other values can be given in the same way
 (`dataset`, `seed`, `store`, `store_fallback`, `'methods=[fused_sdf, tsdf]'`, `'depth={iterations: 5}'`); not with a
 dot, which Snakemake refuses.

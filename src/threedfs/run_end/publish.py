@@ -26,7 +26,7 @@ _PLOTS = {"iou": "iou_*.svg", "depth_experiment": "depth_*.svg"}
 _NEW = f"# Results\n\n{BEGIN}\n{END}\n"
 
 
-def publish(results: Path, docs: Path) -> None:
+def publish(results: Path, docs: Path, *, figures_only: bool = False) -> None:
     """Write `results.csv`, `results.md` and `plots/*.svg` from the tables and plots of a folder of results.
 
     Of `results.md` only the part between the two marks is written; what stands around it is kept, and so are the rows
@@ -35,6 +35,8 @@ def publish(results: Path, docs: Path) -> None:
     Parameters
     ----------
     results, docs : Path
+    figures_only : bool
+        Write `results.csv` alone.
 
     Raises
     ------
@@ -45,11 +47,13 @@ def publish(results: Path, docs: Path) -> None:
     if not figures.is_file():
         raise UserError(f"{figures}: expected the figures of a run, found none; run snakemake first.")
     page = docs / "results.md"
-    before, after = _read_own_words(page)
+    before, after = _read_own_words(page)  # before anything is written
     metrics = read_metrics(figures) + read_metrics(results / "benchmarks" / "costs.csv")
     measured = {metric.dataset for metric in metrics}
     earlier = read_metrics(docs / "results.csv") if (docs / "results.csv").is_file() else []
     write_metrics(docs / "results.csv", [*metrics, *(metric for metric in earlier if metric.dataset not in measured)])
+    if figures_only:
+        return
     plots = sorted((results / "plots").glob("*.svg"))
     for old in (docs / "plots").glob("*.svg"):
         old.unlink()
@@ -86,6 +90,6 @@ def _section(name: str, results: Path, plots: list[str]) -> str:
 
 if __name__ == "__main__":
     try:
-        publish(Path("results"), Path("docs"))
+        publish(Path("results"), Path("docs"), figures_only="--figures-only" in sys.argv[1:])
     except UserError as fault:
         sys.exit(f"threedfs: {fault}")
