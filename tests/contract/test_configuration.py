@@ -111,6 +111,15 @@ def test_benchmark_holds_every_object_of_the_paper_every_real_sequence():
     assert set(benchmark["depth_experiment"]["sequences"]) <= set(sequences)
 
 
+def test_the_printed_table_is_of_the_paper_and_of_the_benchmarks_images(defaults):
+    printed = yaml.safe_load((ROOT / "config/printed.yaml").read_text())
+    benchmark = yaml.safe_load((ROOT / "config/benchmark.yaml").read_text())
+    check_configuration(merged(defaults, printed), configuration_schema())
+    assert printed["sequences"] == {name: {"rendered": name} for name in SEQUENCES}
+    assert all(printed[key] == benchmark[key] for key in ("frames", "keyframes_at_truth", "render", "keyframes"))
+    assert len(printed["methods"]) == 8
+
+
 def test_every_variant_of_the_ablation_changes_a_default(defaults):
     ablation = yaml.safe_load((ROOT / "config/ablation.yaml").read_text())
     check_configuration({**defaults, **ablation}, configuration_schema())
