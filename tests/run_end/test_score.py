@@ -64,8 +64,20 @@ def test_masks_of_any_convention_are_found_by_the_frame(tmp_path, end):
         "iou_mean": pytest.approx((1 + 1 / 3) / 2),
         "iou_median": pytest.approx((1 + 1 / 3) / 2),
         "iou_min": pytest.approx(1 / 3),
+        "masks_scored": 2,
+        "masks_unmatched": 1,
     }
     assert {figure.keyframe for figure in found} == {"", "000000", "000010"}
+
+
+def test_numbers_of_frames_are_names(tmp_path):
+    """Exact: 5.png and 000005.png are of one frame; both in one folder are refused."""
+    write_mask(tmp_path / "mine/5.png", square(5))
+    write_mask(tmp_path / "true/000005.png", square(5))
+    assert values(score_masks(tmp_path / "mine", tmp_path / "true"))["iou_mean"] == 1
+    write_mask(tmp_path / "mine/05.png", square(5))
+    with pytest.raises(UserError, match=r"one mask of each frame, found 05.png of the same"):
+        score_masks(tmp_path / "mine", tmp_path / "true")
 
 
 def test_masks_that_cannot_be_compared_are_refused(tmp_path):

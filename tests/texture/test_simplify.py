@@ -62,6 +62,19 @@ def test_a_hole_stays():
     assert made.is_watertight and made.euler_number == 0
 
 
+def test_sheets_that_meet_in_an_edge_are_parted():
+    """Exact: two boxes that touch along an edge stay closed for those who know vertices by their place."""
+    boxes = [
+        trimesh.creation.box((1, 1, 1), trimesh.transformations.translation_matrix(t)) for t in ((0, 0, 0), (1, 1, 0))
+    ]
+    simple = simplify_mesh(make_mesh(trimesh.util.concatenate(boxes)), 1e-4)
+    by_place = trimesh.Trimesh(simple.vertices.astype(np.float32), simple.faces, process=False)
+    by_place.merge_vertices(digits_vertex=6)
+    assert len(simple.faces) == 24 and len(by_place.vertices) == 16
+    assert by_place.is_watertight
+    assert joined(simple).volume == pytest.approx(2, abs=1e-3)
+
+
 def test_a_mesh_that_is_not_closed_gives_none():
     """Rejection: one face is left out."""
     closed = ball(3)

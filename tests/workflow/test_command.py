@@ -7,12 +7,15 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
+import yaml
 
 import threedfs.cli.main as command
 from threedfs.params.configuration import METHODS
 
+ROOT = Path(__file__).resolve().parents[2]
 STATIC = "static: the camera hardly moves."
 
 
@@ -58,6 +61,20 @@ def test_what_cannot_be_is_refused_in_one_sentence(call, tmp_path, words, senten
     assert f"threedfs: {sentence}" in output
     assert "Traceback" not in output
     assert not list(tmp_path.glob("results/*/1*"))
+
+
+def test_a_request_is_kept_with_its_quality_and_not_replaced_by_one_that_is_refused(call, tmp_path):
+    (tmp_path / "mug.mp4").write_text("film")
+    request = tmp_path / "results/mug/request.yaml"
+    assert call("run", "mug.mp4", "--set", "depth.iterations=none")[0] == 1
+    assert not request.exists()
+    assert call("run", "mug.mp4", "--quality", "draft", "--set", "depth.smoothness=0.02", "--cores", "2")[0] == 0
+    kept = yaml.safe_load(request.read_text())
+    draft = yaml.safe_load((ROOT / "config/presets/draft.yaml").read_text())
+    assert kept["depth"] == draft["depth"] | {"smoothness": 0.02} and kept["crops"] == draft["crops"]
+    status, output = call("run", "mug.mp4", "--set", "depth.iterations=none")
+    assert status == 1 and "report.html" not in output
+    assert yaml.safe_load(request.read_text()) == kept
 
 
 def test_another_file_of_the_same_name_is_refused(call, tmp_path):

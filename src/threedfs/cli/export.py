@@ -23,7 +23,8 @@ def add_export(actions: argparse._SubParsersAction) -> None:
     )
     parser.add_argument(
         "--height",
-        help="true height, as 95mm, if the run did not find the size; meshes are in mm, glb and volumes in metres",
+        help="true height, as 95mm (mm without a unit), if the run did not find the size; meshes are in mm, glb and "
+        "volumes in metres",
     )
     parser.add_argument(
         "--faces",
@@ -96,8 +97,8 @@ def _export_mesh(arguments: argparse.Namespace) -> int:
     if arguments.height is not None:
         size = str(read_height(arguments.height) / (1000 if in_metres else 1))
     if not arguments.faces:
-        export(arguments.results, size, arguments.file, arguments.method)
-        print(arguments.file)
+        tall = export(arguments.results, size, arguments.file, arguments.method)
+        print(f"{arguments.file}: {tall:.4g} {'m' if in_metres else 'mm'} tall")
         return 0
     levels = export_levels(arguments.results, size, arguments.file, arguments.faces, arguments.method)
     for file, level in levels.items():

@@ -63,7 +63,9 @@ def _make_parser() -> argparse.ArgumentParser:
     run.add_argument("video", nargs="+", help="a video (mp4, mov, ...) or a folder of photos of one object")
     run.add_argument("--out", default=".", help="folder that gets results/NAME and the files to print (here)")
     size = run.add_mutually_exclusive_group()
-    size.add_argument("--height", help="true height of the object, as 95mm: writes NAME.stl and NAME.glb to scale")
+    size.add_argument(
+        "--height", help="true height of the object, as 95mm or 9.5cm, mm without a unit: writes NAME.stl and NAME.glb"
+    )
     size.add_argument("--tag", metavar="SIDE", help="the same by an ArUco or AprilTag marker in the scene, as 40mm")
     size.add_argument("--board", metavar="CxR:SIDE", help="the same by a checkerboard, C x R inner corners: 9x6:25mm")
     run.add_argument("--quality", choices=QUALITIES, default="normal", help="draft is fast, fine is slow")

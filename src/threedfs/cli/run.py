@@ -57,7 +57,7 @@ def run(arguments: Namespace) -> int:
         # after a failure meshes may be of an earlier run; of several sequences, one that is not named has ended well
         if not outcome.status or (failed and request not in failed):
             _conclude(request, out)
-        else:
+        elif not outcome.refused:
             _name_report(out / "results" / request.name)
     if not outcome.status:
         print(f"time     {tell_time(time.monotonic() - begun)}")

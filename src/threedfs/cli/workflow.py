@@ -48,6 +48,11 @@ class Outcome:
     faults: tuple[str, ...]
     log: Path
 
+    @property
+    def refused(self) -> bool:
+        """Say whether the configuration was refused, so that nothing was begun."""
+        return any(fault.startswith("configuration") for fault in self.faults)
+
     def names(self, sequence: str) -> bool:
         """Say whether a fault is one of a sequence's: `STAGE of NAME ITEM: sentence`."""
         pattern = rf"\w+ of {re.escape(sequence)}(?: [^:]*)?: "
@@ -77,7 +82,8 @@ def run_workflow(
         same name.
     """
     home, log = find_home(), out / "results/logs/run.txt"
-    preset = [] if quality == "normal" else [str(home / "config/presets" / f"{quality}.yaml")]
+    preset = [] if quality == "normal" else [home / "config/presets" / f"{quality}.yaml"]
+    chosen = _merge(preset, changes)
     try:
         log.parent.mkdir(parents=True, exist_ok=True)
         with (
@@ -85,19 +91,26 @@ def run_workflow(
             open(log, "w", encoding="utf-8") as file,
             open(log.with_name("progress.txt"), "w", encoding="utf-8") as journal,
         ):
-            asked = [_write_request(request, changes, out) for request in requests]
+            before = {_find_request(request, out): _read_request(request, out) for request in requests}
+            for path, request in zip(before, requests, strict=True):
+                path.parent.mkdir(parents=True, exist_ok=True)
+                content = yaml.safe_dump(make_configuration([request], chosen), sort_keys=False)
+                path.write_text(content, encoding="utf-8")
             command = [
                 *(sys.executable, "-m", "snakemake", "--snakefile", str(home / "Snakefile"), "--directory", str(out)),
                 *("--workflow-profile", str(home / "profiles/default")),
-                *("--cores", str(cores), "--keep-going", "--configfile", *preset, *map(str, asked)),
+                *("--cores", str(cores), "--keep-going", "--configfile", *map(str, before)),
             ]
-            costs = find_costs(out, quality, _merge([home / "config/config.yaml", *map(Path, preset)], changes), cores)
+            costs = find_costs(out, quality, _merge([home / "config/config.yaml"], chosen), cores)
             progress = Progress(costs, journal=journal, measure=lambda name: measure_size(out / "results" / name))
             status, interrupted, said = _follow(command, file, progress)
+            faults = dict.fromkeys(line.removeprefix("threedfs: ") for line in said if _FAULT.match(line))
+            outcome = Outcome(status, interrupted, tuple(faults), log)
+            if outcome.refused:
+                _put_back(before)
     except OSError as fault:
         raise UserError(f"--out: expected a folder to write results to, got {out}: {fault.strerror}.") from None
-    faults = dict.fromkeys(line.removeprefix("threedfs: ") for line in said if _FAULT.match(line))
-    return Outcome(status, interrupted, tuple(faults), log)
+    return outcome
 
 
 @contextmanager
@@ -117,23 +130,45 @@ def claim(out: Path) -> Iterator[None]:
         yield
 
 
-def _write_request(request: Request, changes: Mapping[str, Any], out: Path) -> Path:
-    """Write the configuration of a video beside its results, for Snakemake and for whoever wonders later."""
-    path = out / "results" / request.name / "request.yaml"
-    if path.is_file():
-        before = (yaml.safe_load(path.read_text(encoding="utf-8")) or {}).get("sequences", {}).get(request.name, {})
-        if before.get("source") not in (None, str(request.source)):
-            raise UserError(
-                f"{request.source}: expected a name of its own, but {path.parent} holds the results of "
-                f"{before['source']}; rename the file, or use --out."
-            )
-    path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(yaml.safe_dump(make_configuration([request], changes), sort_keys=False), encoding="utf-8")
-    return path
+def _find_request(request: Request, out: Path) -> Path:
+    """Return where the configuration of a video is, beside its results, for Snakemake and for whoever wonders later."""
+    return out / "results" / request.name / "request.yaml"
+
+
+def _read_request(request: Request, out: Path) -> str | None:
+    """Return the configuration that a video was run with before, None if there is none.
+
+    Raises
+    ------
+    UserError
+        If it is of another file.
+    """
+    path = _find_request(request, out)
+    if not path.is_file():
+        return None
+    text = path.read_text(encoding="utf-8")
+    source = (yaml.safe_load(text) or {}).get("sequences", {}).get(request.name, {}).get("source")
+    if source not in (None, str(request.source)):
+        raise UserError(
+            f"{request.source}: expected a name of its own, but {path.parent} holds the results of {source}; rename "
+            "the file, or use --out."
+        )
+    return text
+
+
+def _put_back(before: Mapping[Path, str | None]) -> None:
+    """Let the configurations of earlier runs be as they were."""
+    for path, text in before.items():
+        if text is None:
+            path.unlink()
+            if not any(path.parent.iterdir()):
+                path.parent.rmdir()
+        else:
+            path.write_text(text, encoding="utf-8")
 
 
 def _merge(files: Sequence[Path], changes: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the configuration that Snakemake will make of files and changes."""
+    """Return the configuration that Snakemake would make of files and changes."""
     config: dict[str, Any] = {}
     for part in (*(yaml.safe_load(file.read_text(encoding="utf-8")) for file in files), changes):
         for key, value in part.items():

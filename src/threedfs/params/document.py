@@ -72,8 +72,9 @@ _INTRODUCTION = """\
     snakemake --cores 2 --configfile my.yaml
 
 Values in your file replace the defaults; everything else keeps its default. `presets/paper.yaml` has the constants of
-the paper, `presets/quick.yaml` makes everything small. Several files can be given together; where they differ, the
-last one counts: `--configfile my.yaml config/presets/paper.yaml`. Sections are merged key by key, so a second file adds
+the paper, `presets/quick.yaml` makes everything small, `presets/draft.yaml` and `presets/fine.yaml` are the qualities
+of `threedfs run`. Several files can be given together; where they differ, the last one counts:
+`--configfile my.yaml config/presets/paper.yaml`. Sections are merged key by key, so a second file adds
 its sequences to those of the first; lists and single values are replaced. `benchmark.yaml` is the whole benchmark,
 `printed.yaml` the paper's table with its constants.
 One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`. Other values can be given in the same way
@@ -116,8 +117,8 @@ _KEYS = {
     "dataset": "name of the set, a column of `results/metrics.csv`; tables and plots are made for each set",
     "video": "one video or folder of photos; the sequence gets the file's name; given beside `sequences` it takes "
     "their place",
-    "sequences.<name>.source": "a video (mp4, mov) or a folder of photos (jpg, png, tif, bmp, webp) of one camera, "
-    "zoom and orientation; those of another size are left out",
+    "sequences.<name>.source": "a video (mp4, mov) or a folder of photos (jpg, png, heic, tif, bmp, webp) of one "
+    "camera, zoom and orientation; those of another size are left out",
     "sequences.<name>.dataset": "its own set, in place of `dataset`: one file may hold several sets",
     "sequences.<name>.cameras": "given cameras: a COLMAP model folder, `transforms.json`, `cameras.json` with "
     "`cam_to_world`, a folder of CONTOUR projection matrices or of `NAME.pose.txt` (7-Scenes, 3DMatch), or a pose file "

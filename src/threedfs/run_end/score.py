@@ -25,12 +25,12 @@ _MASK_ENDS = (".png", ".png", ".mask")
 
 
 def score_masks(masks: Path, truth: Path) -> list[Figure]:
-    """Return the intersection over union of each mask that both folders have, and its mean, median and least.
+    """Return the intersection over union of each mask that both folders have, its mean, median and least, and how many.
 
     Parameters
     ----------
     masks, truth : Path
-        Folders of PNG, white on black, of equal names and sizes.
+        Folders of PNG, white on black, of equal names and sizes; `10.png` and `000010.png` are one name.
 
     Raises
     ------
@@ -40,15 +40,19 @@ def score_masks(masks: Path, truth: Path) -> list[Figure]:
     mine, true = _list_masks(masks), _list_masks(truth)
     common = [name for name in mine if name in true]
     if not common:
+        first, second = (next(iter(each.values())).name for each in (mine, true))
         raise UserError(
-            f"{truth}: expected masks named like those of {masks}, such as {next(iter(mine))}, found none of that name."
+            f"{truth}: expected masks named like those of {masks}, such as {first}, found others, such as {second}; "
+            "rename the files of one folder."
         )
     check_true_masks([true[name] for name in common], str(truth))
     overlap = {
         name: intersection_over_union(read_mask(mine[name]), read_true_mask(true[name]), str(true[name]))
         for name in common
     }
-    return mask_figures(overlap)
+    unmatched = len(mine) + len(true) - 2 * len(common)
+    counts = [Figure("masks_scored", len(common), "masks"), Figure("masks_unmatched", unmatched, "masks")]
+    return [*mask_figures(overlap), *counts]
 
 
 def score_mesh(mesh: Path, truth: Path, cameras: Path | None = None, true_cameras: Path | None = None) -> list[Figure]:
@@ -73,9 +77,14 @@ def score_mesh(mesh: Path, truth: Path, cameras: Path | None = None, true_camera
         mine = Mesh(_align(cameras, true_cameras)[2].apply(mine.vertices), mine.faces)
     apart = np.linalg.norm(mine.vertices.mean(axis=0) - true.vertices.mean(axis=0))
     if not apart <= bounding_diagonal(true):
+        advice = (
+            "give --cameras and --true-cameras, by which it is moved there."
+            if cameras is None
+            else f"give with --cameras those of the mesh itself, as {cameras} has other coordinates or another unit."
+        )
         raise UserError(
             f"{mesh}: expected a mesh in the coordinates of {truth}, found its middle farther from the true one's than "
-            "the object is large; give --cameras and --true-cameras, by which it is moved there."
+            f"the object is large; {advice}"
         )
     rule = EvaluateParams()
     error = measure_mesh(mine, true, rule.mesh_thresholds, rule.surface_samples, np.random.default_rng(0))
@@ -108,11 +117,17 @@ def _read_poses(path: Path) -> dict[str, np.ndarray]:
 
 
 def _list_masks(folder: Path) -> Mapping[str, Path]:
-    found = {}
+    found: dict[str, Path] = {}
     for path in sorted(folder.glob("*.png")) if folder.is_dir() else ():
         name = path.name
         for end in _MASK_ENDS:
             name = name.removesuffix(end)
+        if name.isdecimal():
+            name = f"{int(name):06d}"
+        if name in found:
+            raise UserError(
+                f"{path}: expected one mask of each frame, found {found[name].name} of the same; remove one."
+            )
         found[name] = path
     if not found:
         raise UserError(f"{folder}: expected a folder of masks (PNG, white on black), found none there.")

@@ -7,6 +7,9 @@ import numpy as np
 
 from threedfs.types import Mesh
 
+_APART = 1e-5
+"""How far vertices at one place are moved apart, lengths of the diagonal of the mesh's box."""
+
 
 def simplify_mesh(mesh: Mesh, tolerance: float) -> Mesh | None:
     """Return the mesh with the vertices taken out that no face needs to be as near; None if it is not closed.
@@ -20,7 +23,7 @@ def simplify_mesh(mesh: Mesh, tolerance: float) -> Mesh | None:
     Returns
     -------
     Mesh or None
-        Closed, with no more handles than before.
+        Closed, with no more handles than before, and no two vertices at one place.
     """
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     diagonal = float(np.linalg.norm(high - low))
@@ -33,5 +36,30 @@ def simplify_mesh(mesh: Mesh, tolerance: float) -> Mesh | None:
     fewer = solid.simplify(tolerance).to_mesh64()
     if not len(fewer.tri_verts):
         return None
-    vertices = np.asarray(fewer.vert_properties, np.float64)[:, :3] * diagonal + low
-    return Mesh(vertices, np.asarray(fewer.tri_verts, np.int64))
+    faces = np.asarray(fewer.tri_verts, np.int64)
+    vertices = _part(np.asarray(fewer.vert_properties, np.float64)[:, :3], faces)
+    return Mesh(vertices * diagonal + low, faces)
+
+
+def _part(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
+    """Move vertices (V, 3) at one place apart, each a little into its own side.
+
+    Formats such as STL know vertices by their place: where two sheets meet in an edge, four faces would share it.
+    """
+    _, place, count = np.unique(vertices.astype(np.float32), axis=0, return_inverse=True, return_counts=True)
+    place = place.ravel()
+    shared = np.flatnonzero(count[place] > 1)
+    if len(shared) == 0:
+        return vertices
+    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
+    normals = np.zeros_like(vertices)
+    for corner in range(3):
+        np.add.at(normals, faces[:, corner], np.cross(b - a, c - a))
+    normals = normals[shared] / np.maximum(np.linalg.norm(normals[shared], axis=1, keepdims=True), 1e-300)
+    order = np.argsort(place[shared], kind="stable")
+    ranks = np.empty(len(shared), np.int64)
+    first = np.searchsorted(place[shared][order], place[shared][order])
+    ranks[order] = np.arange(len(shared)) - first
+    moved = vertices.copy()
+    moved[shared] -= _APART * (1 + ranks)[:, None] * normals
+    return moved
