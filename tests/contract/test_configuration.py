@@ -118,6 +118,11 @@ def test_the_printed_table_is_of_the_paper_and_of_the_benchmarks_images(defaults
     assert printed["sequences"] == {name: {"rendered": name} for name in SEQUENCES}
     assert all(printed[key] == benchmark[key] for key in ("frames", "keyframes_at_truth", "render", "keyframes"))
     assert len(printed["methods"]) == 8
+    matting = yaml.safe_load((ROOT / "config/matting.yaml").read_text())
+    check_configuration(merged(defaults, matting), configuration_schema())
+    assert matting["methods"] == [*printed["methods"], "spectral_matting"]
+    assert len(matting["sequences"]) == 4 and matting["sequences"].items() < printed["sequences"].items()
+    assert {**matting, "methods": 0, "sequences": 0} == {**printed, "methods": 0, "sequences": 0}
 
 
 def test_every_variant_of_the_ablation_changes_a_default(defaults):

@@ -76,7 +76,7 @@ the paper, `presets/quick.yaml` makes everything small, `presets/draft.yaml` and
 of `threedfs run`. Several files can be given together; where they differ, the last one counts:
 `--configfile my.yaml config/presets/paper.yaml`. Sections are merged key by key, so a second file adds
 its sequences to those of the first; lists and single values are replaced. `benchmark.yaml` is the whole benchmark,
-`printed.yaml` the paper's table with its constants.
+`printed.yaml` the paper's table with its constants, `matting.yaml` four of its rows with the matting that it tried.
 One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4`. Other values can be given in the same way
 (`dataset`, `seed`, `store`, `store_fallback`, `'methods=[fused_sdf, tsdf]'`, `'depth={iterations: 5}'`); not with a
 dot, which Snakemake refuses.
