@@ -34,9 +34,8 @@ HOSTILE = (
 )
 _SAYS = re.compile(r'CONSOLE[:(]\d+\)?\] "(.*)", source: ')
 _OF_THE_DRIVER = "GL Driver Message"
-_ASKS = re.compile(r'"url":"(https?://[^"]*)"')
-_OF_THE_BROWSER = re.compile(r"https?://(?:[\w.-]+\.google\.com|optimizationguide-pa\.googleapis\.com)/")
-"""What it asks by itself: the time, accounts, models."""
+_ASKS = re.compile(r'"initiator":"(?!not an origin)[^"]*".*?"url":"(https?://[^"]*)"')
+"""A request of the page; what the browser asks by itself, such as the time or for an update, comes of no origin."""
 
 
 def find_browser():
@@ -81,7 +80,7 @@ def visit(browser, page, folder):
     asked = set(_ASKS.findall((folder / "net.json").read_text(encoding="utf-8", errors="replace")))
     return (
         [message for message in said if _OF_THE_DRIVER not in message],
-        {address for address in asked if not _OF_THE_BROWSER.match(address)},
+        asked,
         picture[..., ::-1],
     )
 
@@ -127,7 +126,13 @@ def test_faults_harm_and_requests_would_be_seen(tmp_path, browser):
     """The same eyes on a page that has them all."""
     body = (
         '<img src="http://example.org/a.png"><script src="https://example.com/a.js"></script><script>fault()</script>'
+        '<iframe src="https://example.org/frame"></iframe><script>fetch("http://example.net/data")</script>'
     )
     said, asked, _ = visit(browser, wrap_page("page", body + "".join(HOSTILE[:2])), tmp_path)
-    assert {"http://example.org/a.png", "https://example.com/a.js"} <= asked
+    assert asked == {
+        "http://example.org/a.png",
+        "https://example.com/a.js",
+        "https://example.org/frame",
+        "http://example.net/data",
+    }
     assert said.count("harm") == 2 and any("fault is not defined" in message for message in said)
