@@ -12,6 +12,7 @@ from threedfs.evaluate.figures import Figure, mask_figures, mesh_figures, pose_f
 from threedfs.evaluate.masks import intersection_over_union
 from threedfs.evaluate.mesh_error import bounding_diagonal, measure_mesh
 from threedfs.evaluate.pose_error import align_poses, measure_poses
+from threedfs.frames.picture import name_video_frame
 from threedfs.frames.true_masks import check_true_masks, read_true_mask
 from threedfs.geometry.similarity import Similarity
 from threedfs.io.given_cameras import read_given_cameras
@@ -123,7 +124,7 @@ def _list_masks(folder: Path) -> Mapping[str, Path]:
         for end in _MASK_ENDS:
             name = name.removesuffix(end)
         if name.isdecimal():
-            name = f"{int(name):06d}"
+            name = name_video_frame(int(name))
         if name in found:
             raise UserError(
                 f"{path}: expected one mask of each frame, found {found[name].name} of the same; remove one."

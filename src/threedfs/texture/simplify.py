@@ -5,6 +5,7 @@ from __future__ import annotations
 import manifold3d
 import numpy as np
 
+from threedfs.geometry.faces import vertex_normals
 from threedfs.types import Mesh
 
 _APART = 1e-5
@@ -51,15 +52,10 @@ def _part(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     shared = np.flatnonzero(count[place] > 1)
     if len(shared) == 0:
         return vertices
-    a, b, c = (vertices[faces[:, corner]] for corner in range(3))
-    normals = np.zeros_like(vertices)
-    for corner in range(3):
-        np.add.at(normals, faces[:, corner], np.cross(b - a, c - a))
-    normals = normals[shared] / np.maximum(np.linalg.norm(normals[shared], axis=1, keepdims=True), 1e-300)
-    order = np.argsort(place[shared], kind="stable")
+    normals = vertex_normals(Mesh(vertices, faces))[shared]
+    groups = np.sort(place[shared])
     ranks = np.empty(len(shared), np.int64)
-    first = np.searchsorted(place[shared][order], place[shared][order])
-    ranks[order] = np.arange(len(shared)) - first
+    ranks[np.argsort(place[shared], kind="stable")] = np.arange(len(shared)) - np.searchsorted(groups, groups)
     moved = vertices.copy()
     moved[shared] -= _APART * (1 + ranks)[:, None] * normals
     return moved
