@@ -17,10 +17,12 @@ from threedfs.io.crops import Crop, write_crops
 from threedfs.io.depth_maps import DepthMap, write_depth_map
 from threedfs.io.images import read_mask
 from threedfs.io.keyframes import write_keyframes
+from threedfs.io.meshes import read_mesh
 from threedfs.io.poses import Poses, write_poses
 from threedfs.io.segmentation import Segmentation, read_segmentation, write_segmentation
 from threedfs.io.volumes import write_support
 from threedfs.job import Job
+from threedfs.object.silhouettes import draw_silhouette
 from threedfs.params.fuse_object import FuseObjectParams
 from threedfs.params.segment import SegmentParams
 from threedfs.params.surface import SurfaceParams
@@ -211,16 +213,46 @@ def test_without_masks_it_is_refused(table, tmp_path):
     assert not (tmp_path / "mesh.ply").exists()
 
 
+def overlap(masks, table):
+    """Return the mean IoU of masks, in the order of the views, with those of the sphere."""
+    exact = [shows_sphere(table, view, table.depth(view)) for view in table.views]
+    return np.mean([(mask & shown).sum() / (mask | shown).sum() for mask, shown in zip(masks, exact, strict=True)])
+
+
 def agreement(folder, table):
-    """Return the mean IoU of the masks that the stage wrote with those of the sphere."""
+    """Return the mean IoU of the mesh's outlines with those of the sphere."""
+    mesh = read_mesh(folder / "mesh.ply")
+    return overlap([draw_silhouette(mesh, view) for view in table.views], table)
+
+
+def test_masks_are_cut_around_the_surface(table, tmp_path):
+    """Property: around a surface that is too small, masks follow colours, as far as they may."""
+    write_scene(tmp_path, table)
+    cut = read_segmentation(tmp_path / "labels.zarr.zip")
+    thin = {name: cv2.erode(mask.astype(np.uint8), np.ones((9, 9))) > 0 for name, mask in cut.masks.items()}
+    write_segmentation(tmp_path / "labels.zarr.zip", replace(cut, masks=thin), {})
     found = []
-    for view in table.views:
-        drawn, shown = (
-            read_mask(folder / "masks" / f"{view.name}.png"),
-            shows_sphere(table, view, table.depth(view)),
-        )
-        found.append((drawn & shown).sum() / (drawn | shown).sum())
-    return np.mean(found)
+    for ramp in (0.1, 6.0):
+        work(tmp_path, frames=0, outline_weight=1.0, mask_ramp=ramp)
+        masks = [read_mask(tmp_path / "masks" / f"{view.name}.png") for view in table.views]
+        found.append(overlap(masks, table))
+    assert agreement(tmp_path, table) < found[0] < found[1] - 0.02 and found[1] > 0.99
+
+
+def test_depth_holds_what_some_masks_lack(table, tmp_path):
+    """Property: a part that five masks of twelve lack stays, where all depth has its surface and it is high enough."""
+    write_scene(tmp_path, table)
+    cut = read_segmentation(tmp_path / "labels.zarr.zip")
+    masks = {
+        name: mask & ((np.cumsum(mask.any(axis=1)) > 20)[:, None] | (rank % 2 == 0) | (rank > 9))
+        for rank, (name, mask) in enumerate(cut.masks.items())
+    }
+    write_segmentation(tmp_path / "labels.zarr.zip", replace(cut, masks=masks), {})
+    given = {"frames": 0, "gap_views": 99}
+    held, cut_off, low = (
+        work(tmp_path, **given, **change)[0].bounds[1, 2] for change in ({}, {"held_share": 0.0}, {"held_height": 90.0})
+    )
+    assert cut_off + 0.25 * table.radius < held < table.centre[2] + 1.05 * table.radius and low == cut_off
 
 
 def test_what_masks_show_and_no_depth_has_is_filled(table, tmp_path):

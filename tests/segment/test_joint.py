@@ -22,7 +22,7 @@ from threedfs.segment.initialise import UNDECIDED
 from threedfs.segment.joint import CutRule, segment_jointly
 from threedfs.segment.outline import draw_voxels
 from threedfs.segment.refine import RefineRule, refine_mask
-from threedfs.segment.source_mask import distort_mask
+from threedfs.segment.source_mask import distort_masks
 from threedfs.segment.volumetric import VolumetricRule, cut_volume
 from threedfs.types import Box
 
@@ -315,7 +315,11 @@ def test_mask_goes_to_the_source_frame():
     view = look(0.3)
     mask = np.zeros(view.camera.shape, bool)
     mask[20:60, 30:80] = True
-    twice = distort_mask(mask, view.camera, view.camera, (0.0, 0.0), (180, 240))
+
+    def distort(distortion, shape):
+        return dict(distort_masks({"own": mask}, {"own": view}, {"own": view}, distortion, shape))["own"]
+
+    twice = distort((0.0, 0.0), (180, 240))
     assert twice.shape == (180, 240) and np.array_equal(twice[1::2, 1::2][:, :], mask)
-    bent = distort_mask(mask, view.camera, view.camera, (0.8, 0.0), view.camera.shape)
+    bent = distort((0.8, 0.0), view.camera.shape)
     assert 0 < (bent ^ mask).sum() < 0.2 * mask.sum()

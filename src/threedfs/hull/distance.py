@@ -14,6 +14,9 @@ from threedfs.segment.lookup import find_pixel
 from threedfs.segment.outline import depth_inside
 from threedfs.types import View, VoxelGrid
 
+_AT_ONCE = 1 << 20
+"""Voxels whose distances from all cones are held at one time."""
+
 
 def measure_hull(
     masks: Mapping[str, np.ndarray],
@@ -46,23 +49,22 @@ def measure_hull(
         Cores used; the result does not depend on it.
     """
     places = np.flatnonzero(allowed)
-    centres = voxel_places(grid, places)
     shown = [name for name in views if masks[name].any()]
     count = len(shown)
     ranks = [min(int(share * count), max(count - 1, 0)) for share in tolerances]
-    largest = np.full((len(places), max(ranks) + 1), -1, np.float32)
     numba.set_num_threads(max(1, min(threads, numba.config.NUMBA_NUM_THREADS)))
-    depths = map_ahead(lambda name: depth_inside(masks[name] | ~valid[name]), shown, threads=threads)
-    for name, inside in zip(shown, depths, strict=True):
-        view, outside = views[name], -inside
-        # world length of a pixel, per depth, in ramps
-        share = 1 / (view.camera.fx * grid.spacing * ramp)
-        _insert(centres, view.px_from_world, view.cam_from_world[2], outside, share, largest)
-    fields = []
-    for rank in ranks:
-        field = np.ones(grid.shape, np.float32)
-        field.reshape(-1)[places] = largest[:, rank]
-        fields.append(field)
+    outside = list(map_ahead(lambda name: -depth_inside(masks[name] | ~valid[name]), shown, threads=threads))
+    fields = [np.ones(grid.shape, np.float32) for _ in ranks]
+    for part in np.split(places, range(_AT_ONCE, len(places), _AT_ONCE)):
+        centres = voxel_places(grid, part)
+        largest = np.full((len(part), max(ranks) + 1), -1, np.float32)
+        for name, distance in zip(shown, outside, strict=True):
+            view = views[name]
+            # world length of a pixel, per depth, in ramps
+            share = 1 / (view.camera.fx * grid.spacing * ramp)
+            _insert(centres, view.px_from_world, view.cam_from_world[2], distance, share, largest)
+        for field, rank in zip(fields, ranks, strict=True):
+            field.reshape(-1)[part] = largest[:, rank]
     return fields
 
 

@@ -135,6 +135,18 @@ class _Gap:
     wide: np.ndarray
 
 
+def count_outside(
+    places: np.ndarray, views: Mapping[str, View], masks: Mapping[str, np.ndarray], spacing: float
+) -> np.ndarray:
+    """Return how many masks show world points (N, 3) well outside, farther than 1.5 voxels: (N,) int32."""
+    outside = np.zeros(len(places), np.int32)
+    for name, view in views.items():
+        row, column = nearest_pixels(view, places)
+        footprint = view.camera.fx * spacing / (view.cam_from_world[2] @ np.append(places.mean(axis=0), 1))
+        outside[_on(depth_inside(masks[name]) < -_WELL * footprint, row, column)] += 1
+    return outside
+
+
 def _fill_gaps(gaps: list[_Gap], near: np.ndarray, least_views: np.ndarray) -> np.ndarray:
     """Say which voxels (N,) fill gaps that `least_views` (N,) show them on: any gap if they are near, or wide ones."""
     any_gap, wide = np.zeros(len(near), np.int16), np.zeros(len(near), np.int16)

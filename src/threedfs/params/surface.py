@@ -85,6 +85,16 @@ class SurfaceParams(SmoothingSettings):
         minimum=0.0,
         maximum=1.0,
     )
+    held_share: float = parameter(
+        0.3,
+        "share of the keyframes, four at least, whose trusted depth must have the surface at a place before masks that "
+        "lack it do not carve there; 0 for none ever",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    held_height: float = parameter(
+        6.0, "height above the support surface from which depth holds anything so", unit="voxel", minimum=0.0
+    )
     gap_tolerance: float = parameter(
         0.2, "share of the masks that may be wrong in the hull that fills gaps", minimum=0.0, maximum=1.0
     )
@@ -141,6 +151,12 @@ class SurfaceParams(SmoothingSettings):
     outline_ramp: float = parameter(
         6.0,
         "distance to both sides of its outline over which that silhouette is soft, and pixels are labelled anew",
+        unit="voxel of the object's grid",
+        exclusive_minimum=0.0,
+    )
+    mask_ramp: float = parameter(
+        2.0,
+        "the same for the masks of the keyframes, which are cut last, around the finished surface",
         unit="voxel of the object's grid",
         exclusive_minimum=0.0,
     )

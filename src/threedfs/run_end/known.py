@@ -14,7 +14,7 @@ from threedfs.io.volumes import read_support
 from threedfs.params.configuration import MESH_METHODS
 from threedfs.types import Keyframe, Support
 
-MASK_METHODS = ("gc_2d3d_pixel", "gc_2d", *MESH_METHODS, "spectral_matting")
+MASK_METHODS = tuple(dict.fromkeys(["surface", "gc_2d3d_pixel", "gc_2d", *MESH_METHODS, "spectral_matting"]))
 """Methods by whose masks one would look at, the best first."""
 
 

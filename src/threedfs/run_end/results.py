@@ -39,7 +39,7 @@ class Results:
         """Return the mesh of a method, and the colours (V, 3) uint8 RGB of its vertices, None where it has none."""
         return read_colored_mesh(self._find(f"11_object/{method}/mesh.ply", f"a mesh by the method {method}"))
 
-    def masks(self, method: str = "gc_2d3d_pixel") -> dict[str, np.ndarray]:
+    def masks(self, method: str = "surface") -> dict[str, np.ndarray]:
         """Return the masks (H, W) bool of a method, by keyframe, of the size of the video or the photos."""
         folder = self._find(f"11_object/{method}/masks", f"masks by the method {method}")
         return {path.stem: read_mask(path) for path in sorted(folder.glob("*.png"))}

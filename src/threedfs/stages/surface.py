@@ -16,7 +16,7 @@ from threedfs.io.consistency import read_consistency
 from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_depth_map
 from threedfs.io.keyframes import read_keyframes, read_object_pixels
-from threedfs.io.outlines import write_outlines
+from threedfs.io.outlines import write_masks
 from threedfs.io.poses import read_poses
 from threedfs.io.segmentation import read_segmentation
 from threedfs.io.volumes import read_support
@@ -64,7 +64,7 @@ def run(
     among them everywhere. So a depth that nothing confirms carves nothing inside of the outline, and a hollow that
     photographs show is not filled. Then the surface so far outlines the object in more frames, and in the keyframes
     anew, by what the segmentation has learnt (weights of its settings `segmentation`), and the hull of these masks
-    shapes it once more.
+    shapes it once more. The masks of the keyframes are cut once more, close around the finished surface.
 
     Raises
     ------
@@ -116,27 +116,29 @@ def run(
     confirmed = ConfirmedDepth(fused, clip, sureness, views, own, depth_of, job.threads)
     shaping = make_rule(ShapeRule, params, complete=make_rule(HullRule, params))
     surface = shape_surface(confirmed, place.plane, cut.masks, views, valid, shaping)
+    learnt, cut_as = read_appearance(appearance), make_params(SegmentParams, segmentation)
+    refine = make_rule(
+        RefineRule,
+        cut_as,
+        silhouette_weight=params.outline_weight,
+        label_weight=0.0,
+        pair_weight=cut_as.refine_pair_weight,
+        contrast=cut_as.refine_contrast,
+    )
+
+    def outline(mesh, within, ramp):
+        """Return the masks of frames, cut within reach of a mesh's own outline."""
+
+        def cut_out(name):
+            view = within[name]
+            reach = pixels_at(place.box, view, ramp * voxel)
+            return mask_frame(view, images.image(name), valid[name], draw_silhouette(mesh, view), reach, learnt, refine)
+
+        found = job.progress.track(map_ahead(cut_out, within, threads=job.threads), "frame", len(within))
+        return dict(zip(within, found, strict=True))
+
     if surface is not None and params.frames:
-        first = surface
-        learnt = read_appearance(appearance)
-        reach = params.outline_ramp * voxel
-        cut_as = make_params(SegmentParams, segmentation)
-        refine = make_rule(
-            RefineRule,
-            cut_as,
-            silhouette_weight=params.outline_weight,
-            label_weight=0.0,
-            pair_weight=cut_as.refine_pair_weight,
-            contrast=cut_as.refine_contrast,
-        )
-
-        def outline(name):
-            view, silhouette = frames[name], draw_silhouette(first, frames[name])
-            ramp = pixels_at(place.box, view, reach)
-            return mask_frame(view, images.image(name), valid[name], silhouette, ramp, learnt, refine)
-
-        found = job.progress.track(map_ahead(outline, frames, threads=job.threads), "frame", len(frames))
-        outlines = dict(zip(frames, found, strict=True))
+        outlines = outline(surface, frames, params.outline_ramp)
         surface = shape_surface(confirmed, place.plane, outlines, frames, valid, shaping) or surface
     if surface is None:
         raise UserError(
@@ -149,4 +151,5 @@ def run(
     job.progress.note(f"{method}: depth is sure by {sureness:.2f}; {len(surface.faces)} triangles")
     posed = read_poses(poses)
     whole = {view.name: view for view in posed.views}
-    write_outlines(silhouettes, masks, surface, seen_by, whole, posed.distortion, images.source_shape, job.header)
+    drawn = outline(surface, views, params.mask_ramp)
+    write_masks(silhouettes, masks, drawn, views, whole, posed.distortion, images.source_shape, job.header)

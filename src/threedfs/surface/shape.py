@@ -16,6 +16,7 @@ from threedfs.object.field import mask_field
 from threedfs.object.smooth import smooth_mesh
 from threedfs.surface.complete import HullRule, close_pits, complete_depth
 from threedfs.surface.confirmed import ConfirmedDepth
+from threedfs.surface.held import release_bound
 from threedfs.surface.plate import bend_mesh, support_vertices
 from threedfs.surface.sight import fill_unseen
 from threedfs.surface.tunnels import close_tunnels
@@ -29,6 +30,8 @@ class ShapeRule:
     complete: HullRule
     hull_tolerance: float
     bound_tolerance: float
+    held_share: float
+    held_height: float
     gap_tolerance: float
     free_share: float
     closing: float
@@ -65,7 +68,7 @@ def shape_surface(
         return None
     grid, sureness = depth.fused.grid, depth.sureness
     height = height_above(plane, grid)
-    hulls = measure_hull(
+    hull, bound, filler = measure_hull(
         masks,
         views,
         valid,
@@ -75,11 +78,20 @@ def shape_surface(
         tolerances=(rule.hull_tolerance, rule.bound_tolerance, rule.gap_tolerance),
         threads=depth.threads,
     )
+    bound = release_bound(
+        bound,
+        height,
+        depth,
+        masks,
+        views,
+        held_share=rule.held_share,
+        held_height=rule.held_height,
+    )
     sdf = complete_depth(
-        deepcopy(depth.fused), *hulls, sureness, height > 0, masks, views, rule.complete, depth.threads
+        deepcopy(depth.fused), hull, bound, filler, sureness, height > 0, masks, views, rule.complete, depth.threads
     )
     sdf = close_pits(sdf, rule.closing * (1 - sureness))
-    sdf = fill_unseen(sdf, hulls[-1], height > 0, plane.normal, depth, rule.free_share)
+    sdf = fill_unseen(sdf, filler, height > 0, plane.normal, depth, rule.free_share)
     alone = mask_field(sdf, np.ones(grid.shape, bool), height, grid.spacing, rule.medians)
     alone = close_tunnels(alone, height > 0, rule.tunnel_width)
     if not (alone < 0).any():
