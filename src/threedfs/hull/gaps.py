@@ -112,7 +112,7 @@ def find_gaps(
         footprint = max(1, int(np.ceil(view.camera.fx * grid.spacing / (view.cam_from_world[2] @ middle))))
         away = np.zeros(0, np.int64)
         if odds > 0:
-            away = _on(depth_inside(masks[name]) < -_WELL * footprint, row, column)
+            away = _find_outside(masks[name], row, column, footprint)
         wide = cv2.morphologyEx(gap.astype(np.uint8), cv2.MORPH_OPEN, _disc(_RIM * footprint)) > 0
         voxels = _on(gap, row, column)
         return _Gap(voxels, wide[row[voxels], column[voxels]]), away
@@ -138,13 +138,32 @@ class _Gap:
 def count_outside(
     places: np.ndarray, views: Mapping[str, View], masks: Mapping[str, np.ndarray], spacing: float
 ) -> np.ndarray:
-    """Return how many masks show world points (N, 3) well outside, farther than 1.5 voxels: (N,) int32."""
+    """Return how many masks show world points well outside: farther than 1.5 voxels from what they show.
+
+    Parameters
+    ----------
+    places : (N, 3) float64
+        World, one at least.
+    views, masks : mapping of str
+        View, and (H, W) bool.
+    spacing : float
+        Edge of a voxel, scene units.
+
+    Returns
+    -------
+    (N,) int32
+    """
     outside = np.zeros(len(places), np.int32)
     for name, view in views.items():
         row, column = nearest_pixels(view, places)
         footprint = view.camera.fx * spacing / (view.cam_from_world[2] @ np.append(places.mean(axis=0), 1))
-        outside[_on(depth_inside(masks[name]) < -_WELL * footprint, row, column)] += 1
+        outside[_find_outside(masks[name], row, column, footprint)] += 1
     return outside
+
+
+def _find_outside(mask: np.ndarray, row: np.ndarray, column: np.ndarray, footprint: float) -> np.ndarray:
+    """Return the points, ascending, that a mask (H, W) bool shows well outside; a voxel is `footprint` pixels wide."""
+    return _on(depth_inside(mask) < -_WELL * footprint, row, column)
 
 
 def _fill_gaps(gaps: list[_Gap], near: np.ndarray, least_views: np.ndarray) -> np.ndarray:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -43,12 +43,10 @@ def write_outlines(
         As `draw_source_silhouette` takes them.
     header : mapping
     """
+    names = [view.name for view in views]
+    filmed = ((name, draw_source_silhouette(surface, whole[name], distortion, source_shape)) for name in names)
     write_silhouettes(silhouettes, {view.name: draw_silhouette(surface, view) for view in views}, header)
-    masks.mkdir(parents=True, exist_ok=True)
-    for view in views:
-        write_mask(
-            masks / f"{view.name}.png", draw_source_silhouette(surface, whole[view.name], distortion, source_shape)
-        )
+    _write_filmed(masks, filmed)
 
 
 def write_masks(
@@ -72,6 +70,11 @@ def write_masks(
         As `write_outlines` takes them.
     """
     write_silhouettes(silhouettes, drawn, header)
-    masks.mkdir(parents=True, exist_ok=True)
-    for name, mask in distort_masks(drawn, views, whole, distortion, source_shape):
-        write_mask(masks / f"{name}.png", mask)
+    _write_filmed(masks, distort_masks(drawn, views, whole, distortion, source_shape))
+
+
+def _write_filmed(folder: Path, masks: Iterable[tuple[str, np.ndarray]]) -> None:
+    """Write masks (Hs, Ws) bool, with their names, as `NAME.png`."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for name, mask in masks:
+        write_mask(folder / f"{name}.png", mask)

@@ -78,15 +78,7 @@ def shape_surface(
         tolerances=(rule.hull_tolerance, rule.bound_tolerance, rule.gap_tolerance),
         threads=depth.threads,
     )
-    bound = release_bound(
-        bound,
-        height,
-        depth,
-        masks,
-        views,
-        held_share=rule.held_share,
-        held_height=rule.held_height,
-    )
+    bound = release_bound(bound, height, depth, masks, views, held_share=rule.held_share, held_height=rule.held_height)
     sdf = complete_depth(
         deepcopy(depth.fused), hull, bound, filler, sureness, height > 0, masks, views, rule.complete, depth.threads
     )
