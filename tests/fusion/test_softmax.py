@@ -150,6 +150,17 @@ def test_distrusted_vote_loses_but_decides_alone():
     assert fuse(grid, [(*empty, np.full(shape, 1.6)), solid])[0].item() == pytest.approx(1, abs=1e-6)
 
 
+def test_space_before_a_distrusted_surface_counts_by_the_confidence_in_that():
+    """Exact: two views, one surface behind the other; in front of both, between them, and behind both."""
+    grid = VoxelGrid(np.array([0.0, 0.0, 0.8]), 0.1, (1, 1, 8))
+    near, far, whole, none = (np.full((81, 81), value) for value in (1.05, 1.25, 1.0, 0.0))
+    votes = [(FACING, near, whole * 0.5), (FACING, far, none, None, whole)]
+    sdf = fuse(grid, votes, clip=0.01, hardness=0.0)[0][0, 0]
+    np.testing.assert_allclose(sdf, [1, 1, 1, 1, 1, -1, -1, -1], atol=1e-6)
+    sdf = fuse(grid, [votes[0], votes[1][:3]], clip=0.01, hardness=0.0)[0][0, 0]
+    np.testing.assert_allclose(sdf, [1, 1, 1, -1, -1, -1, -1, -1], atol=1e-6)
+
+
 def test_view_that_does_not_see_a_voxel_is_not_heard_where_another_sees_it():
     """Exact: hidden votes count only among themselves, and without confidence as in the paper."""
     grid = VoxelGrid(np.array([0.0, 0.0, 1.5]), 0.01, (1, 1, 1))

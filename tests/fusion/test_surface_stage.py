@@ -84,8 +84,10 @@ def write_scene(folder, table, *, pit=False, lost=False, empty=False):
         write_depth_map(folder / "depth" / f"{view.name}.zarr.zip", DepthMap(depth, 0 * photometric, photometric), {})
         agree = np.where(bare & pit, 1 + rank % 2, 9).astype(np.uint8)
         silent, free = np.zeros_like(agree), np.zeros(agree.shape, np.float32)
-        ones = np.ones(agree.shape, np.float32)
-        maps[view.name] = ConsistencyMap(confidence=ones, agree=agree, too_near=silent, too_far=silent, free_depth=free)
+        share = np.where(bare & pit, 0.7, 1.0).astype(np.float32)
+        maps[view.name] = ConsistencyMap(
+            confidence=share, agree=agree, too_near=silent, too_far=silent, free_depth=free
+        )
     write_consistency(folder / "consistency.zarr.zip", maps.items(), {})
     write_keyframes(folder / "keyframes.json", [Keyframe(view, (), 0.5, 3.0) for view in views], {}, object_pixels=80.0)
     spacing = 2.6 * table.radius / SIDE
@@ -192,13 +194,16 @@ def test_the_same_bytes_twice(pitted):
         {"medians": 0},
         {"sure_from": 0.0},
         {"sure_full": 0.65},
+        {"free_contradicted": 0.0},
+        {"free_from": 0.0},
+        {"free_full": 1.0},
         {"sure_hull_trust": 0.9},
         {"sure_clip_share": 0.9},
         {"gap_views": 99},
         {"gap_share": 1.0},
         {"smoothing_steps": 0},
         {"smoothing_contrast": 5.0},
-        {"outline_ramp": 1.0},
+        {"outline_ramp": 0.25},
     ],
     ids=str,
 )

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from threedfs.surface.trust import TrustRule, rate_sureness, trust_depth
+from threedfs.surface.trust import TrustRule, rate_sureness, share_matched, trust_depth, trust_free
 
 RULE = TrustRule(
     agree_from=2.0,
@@ -14,6 +14,9 @@ RULE = TrustRule(
     matched_full=0.4,
     sure_from=0.5,
     sure_full=0.9,
+    free_contradicted=0.15,
+    free_from=0.4,
+    free_full=0.6,
 )
 SHAPE = (40, 60)
 INSIDE = np.ones(SHAPE, bool)
@@ -21,7 +24,8 @@ INSIDE = np.ones(SHAPE, bool)
 
 def rate(agree, confidence=1.0, photometric=0.0, mask=INSIDE, reach=5.0, rule=RULE, sureness=0.0):
     maps = (np.full(SHAPE, value, kind) for value, kind in ((agree, np.uint8), (confidence, np.float32)))
-    return trust_depth(*maps, np.broadcast_to(np.float32(photometric), SHAPE), mask, reach, rule, sureness)
+    matched = share_matched(np.broadcast_to(np.float32(photometric), SHAPE), mask, reach, rule, sureness)
+    return trust_depth(*maps, matched, rule)
 
 
 @pytest.mark.parametrize(("agree", "trust"), [(0, 0.0), (2, 0.0), (3, 1 / 3), (5, 1.0), (9, 1.0)])
@@ -69,3 +73,18 @@ def test_on_a_bare_object_matches_must_be_better():
     bare, sure = (rate(1, photometric=0.015, rule=RULE, sureness=sureness).max() for sureness in (0.0, 0.8))
     assert bare == 0 < sure
     assert rate(1, photometric=0.015, sureness=0.7).max() == 0
+
+
+def test_space_that_few_contradict_is_free_however_few_agree():
+    """Exact: of 20 keyframes fewer than three may have a surface there; elsewhere the trust in the depth decides."""
+    own, too_far = np.float32([0.0, 0.2, 0.2, 0.9]), np.uint8([0, 2, 3, 20])
+    free = trust_free(own, too_far, np.ones(4), 20, 1.0, RULE)
+    np.testing.assert_array_equal(free, np.float32([1, 1, 0.2, 0.9]))
+
+
+@pytest.mark.parametrize(("sureness", "matched", "believed"), [(1.0, 0.5, 0.5), (0.4, 0.6, 0.5), (0.2, 1.0, 0.0)])
+def test_space_is_no_freer_than_depth_is_trusted_on_bare_faces_and_objects(sureness, matched, believed):
+    """Exact: half way up either ramp it is believed by half, and never less than the depth is trusted."""
+    own, none = np.float32([0.0, 0.7]), np.zeros(2, np.uint8)
+    free = trust_free(own, none, np.full(2, matched), 20, sureness, RULE)
+    np.testing.assert_allclose(free, np.maximum(own, np.float32(believed)), atol=1e-6)

@@ -102,6 +102,7 @@ class SoftMaximum(ViewFusion):
         depth: np.ndarray,
         confidence: np.ndarray | None = None,
         free_depth: np.ndarray | None = None,
+        front_confidence: np.ndarray | None = None,
     ) -> tuple:
         """Return what a view has to say on every voxel it sees; changes nothing.
 
@@ -116,6 +117,9 @@ class SoftMaximum(ViewFusion):
         free_depth : (H, W) float, optional
             Depth up to which no other view contradicts that the ray is free: votes for empty space well in
             front of the surface and of this depth count fully, whatever the confidence in the surface.
+        front_confidence : (H, W) float in [0, 1], optional
+            Trust that the space before each pixel's surface is free, where it is not that in the surface: depth that
+            is wrong by being too near is right about that.
 
         Raises
         ------
@@ -123,15 +127,21 @@ class SoftMaximum(ViewFusion):
             If a map has not the shape of the view's images.
         """
         shape = view.camera.shape
-        maps = {"depth": depth, "confidence": confidence, "free depth": free_depth}
+        maps = {
+            "depth": depth,
+            "confidence": confidence,
+            "free depth": free_depth,
+            "front confidence": front_confidence,
+        }
         for name, values in maps.items():
             if values is not None:
                 check_shape(values, shape, f"{name} of view {view.name}")
-        trust = np.ones(shape) if confidence is None else self._rate(view.camera, depth, confidence)
-        handicap = self._distrust * (1.0 - trust)
+        facing = 1.0 if confidence is None and front_confidence is None else self._face(view.camera, depth)
+        handicap = np.zeros(shape) if confidence is None else self._handicap(confidence, facing)
+        front = handicap if front_confidence is None else self._handicap(front_confidence, facing)
         hidden = 0.0 if confidence is None else self._hidden
         free = np.zeros(shape, np.float32) if free_depth is None else free_depth.astype(np.float32)
-        return relate(self.grid, view), invert_depth(depth), handicap, free, hidden
+        return relate(self.grid, view), invert_depth(depth), handicap, front, free, hidden
 
     def count(self, *ballot: Any) -> None:
         """Add the votes of one view to the sums of Eq. 15."""
@@ -148,12 +158,16 @@ class SoftMaximum(ViewFusion):
         self._weight += vote
         self._seen += self._seen < 255
 
-    def _rate(self, camera: Camera, depth: np.ndarray, confidence: np.ndarray) -> np.ndarray:
-        """Return the trust in each pixel, (H, W) float64 in [0, 1]."""
-        trust = confidence.astype(np.float64)
-        if self._facing > 0:
-            trust = trust * np.clip(facing_cosine(camera, depth) / self._facing, 0.0, 1.0)
-        return gaussian_filter(trust, self._trust_blur) if self._trust_blur > 0 else trust
+    def _face(self, camera: Camera, depth: np.ndarray) -> np.ndarray | float:
+        """Return the share of its confidence that a pixel keeps for how squarely it is seen, (H, W) float64."""
+        return np.clip(facing_cosine(camera, depth) / self._facing, 0.0, 1.0) if self._facing > 0 else 1.0
+
+    def _handicap(self, confidence: np.ndarray, facing: np.ndarray | float) -> np.ndarray:
+        """Return what is taken off the exponent of each pixel's vote, (H, W) float64."""
+        trust = confidence.astype(np.float64) * facing
+        if self._trust_blur > 0:
+            trust = gaussian_filter(trust, self._trust_blur)
+        return self._distrust * (1.0 - trust)
 
     def result(self) -> tuple[np.ndarray, np.ndarray]:
         """Return the fused field and what is known of each voxel.
@@ -193,6 +207,7 @@ def _add_view(
     rays,
     inverse_depth,
     handicap,
+    front,
     free_depth,
     hidden,
     hidden_from,
@@ -209,7 +224,7 @@ def _add_view(
                 )
                 if math.isnan(distance):
                     continue
-                penalty = handicap[row, column]
+                penalty = front[row, column] if distance > 0 else handicap[row, column]
                 if distance > 1.0 and voxel_depth <= free_depth[row, column]:
                     penalty *= max(0.0, 1.0 - (distance - 1.0) / _FREE_RAMP)
                 elif distance < -1.0:

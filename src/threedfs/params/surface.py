@@ -63,6 +63,18 @@ class SurfaceParams(SmoothingSettings):
     sure_full: float = parameter(
         0.85, "mean trust in the object's depth from which its depth is sure", minimum=0.0, maximum=1.0
     )
+    free_contradicted: float = parameter(
+        0.15,
+        "where fewer keyframes have a surface before a depth than this, the space up to it is free among pixels whose "
+        "photographs match, on an object whose depth is sure; 0 for nowhere",
+        unit="share of all",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    free_from: float = parameter(
+        0.4, "share of such matches among the object's pixels around up to which it is not", minimum=0.0, maximum=1.0
+    )
+    free_full: float = parameter(0.6, "share of such matches from which it is", minimum=0.0, maximum=1.0)
     hull_trust: float = parameter(
         0.45,
         "trust that the hull of the masks counts as much as, against depth, on a bare object",

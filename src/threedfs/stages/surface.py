@@ -34,7 +34,7 @@ from threedfs.segment.refine import RefineRule
 from threedfs.surface.complete import HullRule
 from threedfs.surface.confirmed import ConfirmedDepth
 from threedfs.surface.shape import ShapeRule, shape_surface
-from threedfs.surface.trust import TrustRule, rate_sureness, trust_depth
+from threedfs.surface.trust import TrustRule, rate_sureness, share_matched, trust_depth, trust_free
 from threedfs.texture.vertices import color_vertices, confirm_vertices, sample_vertices
 
 
@@ -90,11 +90,14 @@ def run(
     def depth_of(name):
         return read_depth_map(paths[name]).depth
 
-    def trust_of(name, sureness=0.0):
-        said, matched = trust.read(name), read_depth_map(paths[name]).confidence
+    def matches_of(name, sureness=0.0):
         length = read_object_pixels(keyframes, name) or measure_object([views[name]], corners) or 0.0
-        reach = params.matched_reach * length
-        return trust_depth(said.agree, said.confidence, matched, cut.masks[name], reach, rule, sureness)
+        matched = read_depth_map(paths[name]).confidence
+        return share_matched(matched, cut.masks[name], params.matched_reach * length, rule, sureness)
+
+    def trust_of(name, sureness=0.0):
+        said = trust.read(name)
+        return trust_depth(said.agree, said.confidence, matches_of(name, sureness), rule)
 
     own = dict(zip(views, map_ahead(trust_of, views, threads=job.threads), strict=True))
     sureness = rate_sureness(own.values(), (cut.masks[name] for name in own), rule)
@@ -112,7 +115,13 @@ def run(
         hidden_distance=share * fused_as.hidden_distance * voxel,
         threads=job.threads,
     )
-    fused.add_all((views[name], depth_of(name), own[name]) for name in job.progress.track(views, "keyframe"))
+
+    def vote_of(name):
+        matched = matches_of(name, sureness)
+        free = trust_free(own[name], trust.read(name).too_far, matched, len(views), sureness, rule)
+        return views[name], depth_of(name), own[name], None, free
+
+    fused.add_all(vote_of(name) for name in job.progress.track(views, "keyframe"))
     confirmed = ConfirmedDepth(fused, clip, sureness, views, own, depth_of, job.threads)
     shaping = make_rule(ShapeRule, params, complete=make_rule(HullRule, params))
     surface = shape_surface(confirmed, place.plane, cut.masks, views, valid, shaping)

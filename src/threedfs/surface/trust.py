@@ -8,6 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
+_BARE, _SURE = 0.2, 0.6
+"""Sureness up to which space is no freer than its depth is trusted, and from which depth says all it can of it."""
+
 
 @dataclass(frozen=True)
 class TrustRule:
@@ -21,17 +24,38 @@ class TrustRule:
     matched_full: float
     sure_from: float
     sure_full: float
+    free_contradicted: float
+    free_from: float
+    free_full: float
 
 
-def trust_depth(
-    agree: np.ndarray,
-    confidence: np.ndarray,
-    photometric: np.ndarray,
-    mask: np.ndarray,
-    reach: float,
-    rule: TrustRule,
-    sureness: float = 0.0,
+def share_matched(
+    photometric: np.ndarray, mask: np.ndarray, reach: float, rule: TrustRule, sureness: float = 0.0
 ) -> np.ndarray:
+    """Return the share of an object's pixels around each whose photographs match, (H, W) float64 in [0, 1].
+
+    Not in the paper.
+
+    Parameters
+    ----------
+    photometric : (H, W) float32
+        Confidence of the depth by the keyframe's own photographs (3.2, Eq. 11).
+    mask : (H, W) bool
+        The object: matches on what surrounds it say nothing of it.
+    reach : float
+        Standard deviation of the neighbourhood, pixels.
+    rule : TrustRule
+    sureness : float
+        Of the object's depth, in [0, 1] (`rate_sureness`); a mirror image matches, too, but seldom as well as a
+        texture does, so on a bare object matches must be better.
+    """
+    inside = mask.astype(np.float64)
+    least = rule.bare_matched + sureness * (rule.matched - rule.bare_matched)
+    matched = gaussian_filter((photometric > least) * inside, reach)
+    return matched / np.maximum(gaussian_filter(inside, reach), 1e-3)
+
+
+def trust_depth(agree: np.ndarray, confidence: np.ndarray, matched: np.ndarray, rule: TrustRule) -> np.ndarray:
     """Return the trust in a depth map, (H, W) float32 in [0, 1], by what other views and photographs say of it.
 
     Not in the paper. Depth is trusted that many views have found too; or, as few views see into a hollow, that none
@@ -44,24 +68,39 @@ def trust_depth(
         Views that have a surface where the pixel has it (`Agreement`).
     confidence : (H, W) float32
         Share of agreement, in [0, 1] (`rate_confidence`).
-    photometric : (H, W) float32
-        Confidence of the depth by the keyframe's own photographs (3.2, Eq. 11).
-    mask : (H, W) bool
-        The object: matches on what surrounds it say nothing of it.
-    reach : float
-        Standard deviation of the neighbourhood, pixels.
+    matched : (H, W) float64
+        Share of matches around (`share_matched`).
     rule : TrustRule
-    sureness : float
-        Of the object's depth, in [0, 1] (`rate_sureness`); a mirror image matches, too, but seldom as well as a
-        texture does, so on a bare object matches must be better.
     """
     seen = _rise(agree.astype(np.float64), rule.agree_from, rule.agree_full)
-    inside = mask.astype(np.float64)
-    around = np.maximum(gaussian_filter(inside, reach), 1e-3)
-    least = rule.bare_matched + sureness * (rule.matched - rule.bare_matched)
-    share = gaussian_filter((photometric > least) * inside, reach) / around
-    matched = _rise(share, rule.matched_from, rule.matched_full) * confidence
-    return np.maximum(seen, matched).astype(np.float32)
+    return np.maximum(seen, _rise(matched, rule.matched_from, rule.matched_full) * confidence).astype(np.float32)
+
+
+def trust_free(
+    trust: np.ndarray, too_far: np.ndarray, matched: np.ndarray, keyframes: int, sureness: float, rule: TrustRule
+) -> np.ndarray:
+    """Return the trust that the space before a depth map's surface is free, (H, W) float32 in [0, 1].
+
+    Not in the paper. Between spines and in hollows hardly two views have the same depth, mostly as it is too near; but
+    the space before it is free all the same, unless others have a surface there. That none has says little where few
+    photographs match around, and of a bare object.
+
+    Parameters
+    ----------
+    trust : (H, W) float32
+        In the surface (`trust_depth`).
+    too_far : (H, W) uint8
+        Views that have a surface before it (`Agreement`).
+    matched : (H, W) float64
+        Share of matches around (`share_matched`).
+    keyframes : int
+        That have depth.
+    sureness : float
+        Of the object's depth, in [0, 1] (`rate_sureness`).
+    rule : TrustRule
+    """
+    free = (too_far < rule.free_contradicted * keyframes) * _rise(matched, rule.free_from, rule.free_full)
+    return np.maximum(trust, _rise(sureness, _BARE, _SURE) * free).astype(np.float32)
 
 
 def rate_sureness(trust: Iterable[np.ndarray], masks: Iterable[np.ndarray], rule: TrustRule) -> float:
