@@ -72,9 +72,12 @@ class SurfaceParams(SmoothingSettings):
         maximum=1.0,
     )
     free_from: float = parameter(
-        0.4, "share of such matches among the object's pixels around up to which it is not", minimum=0.0, maximum=1.0
+        0.4,
+        "share of the object's pixels around that match, up to which space is no freer than its depth is trusted",
+        minimum=0.0,
+        maximum=1.0,
     )
-    free_full: float = parameter(0.6, "share of such matches from which it is", minimum=0.0, maximum=1.0)
+    free_full: float = parameter(0.6, "share of such pixels from which that space is free", minimum=0.0, maximum=1.0)
     hull_trust: float = parameter(
         0.45,
         "trust that the hull of the masks counts as much as, against depth, on a bare object",

@@ -90,14 +90,13 @@ def run(
     def depth_of(name):
         return read_depth_map(paths[name]).depth
 
-    def matches_of(name, sureness=0.0):
+    def matches_of(name, photometric, sureness):
         length = read_object_pixels(keyframes, name) or measure_object([views[name]], corners) or 0.0
-        matched = read_depth_map(paths[name]).confidence
-        return share_matched(matched, cut.masks[name], params.matched_reach * length, rule, sureness)
+        return share_matched(photometric, cut.masks[name], params.matched_reach * length, rule, sureness)
 
     def trust_of(name, sureness=0.0):
-        said = trust.read(name)
-        return trust_depth(said.agree, said.confidence, matches_of(name, sureness), rule)
+        said, found = trust.read(name), read_depth_map(paths[name])
+        return trust_depth(said.agree, said.confidence, matches_of(name, found.confidence, sureness), rule)
 
     own = dict(zip(views, map_ahead(trust_of, views, threads=job.threads), strict=True))
     sureness = rate_sureness(own.values(), (cut.masks[name] for name in own), rule)
@@ -117,9 +116,10 @@ def run(
     )
 
     def vote_of(name):
-        matched = matches_of(name, sureness)
+        found = read_depth_map(paths[name])
+        matched = matches_of(name, found.confidence, sureness)
         free = trust_free(own[name], trust.read(name).too_far, matched, len(views), sureness, rule)
-        return views[name], depth_of(name), own[name], None, free
+        return views[name], found.depth, own[name], None, free
 
     fused.add_all(vote_of(name) for name in job.progress.track(views, "keyframe"))
     confirmed = ConfirmedDepth(fused, clip, sureness, views, own, depth_of, job.threads)
