@@ -161,6 +161,20 @@ def test_space_before_a_distrusted_surface_counts_by_the_confidence_in_that():
     np.testing.assert_allclose(sdf, [1, 1, 1, -1, -1, -1, -1, -1], atol=1e-6)
 
 
+def test_confidence_above_1_makes_up_for_a_surface_that_turns_away():
+    """Exact: seen at a cosine of about 0.7, twice the confidence counts as a full one that is seen squarely."""
+    grid = VoxelGrid(np.array([0.0, 0.0, 0.8]), 0.1, (1, 1, 8))
+    aslant = 1 / (1 + (np.arange(81) - 40) / 100) * np.ones((81, 1))
+    other = (FACING, np.full((81, 81), 1.25), np.full((81, 81), 0.5))
+
+    def votes(confidence):
+        return [(FACING, aslant, np.full((81, 81), confidence)), other]
+
+    plain = fuse(grid, votes(1.0), clip=0.01, hardness=0.0, facing=0.0)[0]
+    assert fuse(grid, votes(2.0), clip=0.01, hardness=0.0, facing=1.0)[0].tobytes() == plain.tobytes()
+    assert fuse(grid, votes(1.0), clip=0.01, hardness=0.0, facing=1.0)[0].tobytes() != plain.tobytes()
+
+
 def test_view_that_does_not_see_a_voxel_is_not_heard_where_another_sees_it():
     """Exact: hidden votes count only among themselves, and without confidence as in the paper."""
     grid = VoxelGrid(np.array([0.0, 0.0, 1.5]), 0.01, (1, 1, 1))

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from threedfs.surface.trust import TrustRule, rate_sureness, share_matched, trust_depth, trust_free
+from threedfs.surface.trust import TrustRule, rate_sureness, share_matched, trust_aslant, trust_depth, trust_free
 
 RULE = TrustRule(
     agree_from=2.0,
@@ -17,6 +17,9 @@ RULE = TrustRule(
     free_contradicted=0.15,
     free_from=0.4,
     free_full=0.6,
+    aslant=0.5,
+    aslant_from=5.0,
+    aslant_full=9.0,
 )
 SHAPE = (40, 60)
 INSIDE = np.ones(SHAPE, bool)
@@ -73,6 +76,13 @@ def test_on_a_bare_object_matches_must_be_better():
     bare, sure = (rate(1, photometric=0.015, rule=RULE, sureness=sureness).max() for sureness in (0.0, 0.8))
     assert bare == 0 < sure
     assert rate(1, photometric=0.015, sureness=0.7).max() == 0
+
+
+def test_depth_that_many_views_agree_on_is_trusted_though_the_surface_turns_away():
+    """Exact: half way up the ramp a vote reaches full trust seen squarely, from its end on at a cosine of a half."""
+    agree = np.uint8([5, 7, 9, 20, 0])
+    trust = np.float32([1.0, 0.4, 0.4, 1.0, 0.2])
+    np.testing.assert_allclose(trust_aslant(trust, agree, RULE), [1.0, 1.0, 2.0, 2.0, 0.2], atol=1e-6)
 
 
 def test_space_that_few_contradict_is_free_however_few_agree():

@@ -113,12 +113,13 @@ class SoftMaximum(ViewFusion):
         ----------
         view : View
         depth : (H, W) float, NaN where missing
-        confidence : (H, W) float in [0, 1], optional
-            Trust in each pixel; without it every vote counts the same.
+        confidence : (H, W) float, 0 or more, optional
+            Trust in each pixel, full from 1 on; more makes up for a surface that turns away. Without it every vote
+            counts the same.
         free_depth : (H, W) float, optional
             Depth up to which no other view contradicts that the ray is free: votes for empty space well in
             front of the surface and of this depth count fully, whatever the confidence in the surface.
-        front_confidence : (H, W) float in [0, 1], optional
+        front_confidence : (H, W) float, 0 or more, optional
             Trust that the space before each pixel's surface is free, where it is not that in the surface: depth that
             is wrong by being too near is right about that.
 
@@ -165,7 +166,7 @@ class SoftMaximum(ViewFusion):
 
     def _handicap(self, confidence: np.ndarray, facing: np.ndarray | float) -> np.ndarray:
         """Return what is taken off the exponent of each pixel's vote, (H, W) float64."""
-        trust = confidence.astype(np.float64) * facing
+        trust = np.minimum(confidence.astype(np.float64) * facing, 1.0)
         if self._trust_blur > 0:
             trust = gaussian_filter(trust, self._trust_blur)
         return self._distrust * (1.0 - trust)

@@ -34,7 +34,7 @@ from threedfs.segment.refine import RefineRule
 from threedfs.surface.complete import HullRule
 from threedfs.surface.confirmed import ConfirmedDepth
 from threedfs.surface.shape import ShapeRule, shape_surface
-from threedfs.surface.trust import TrustRule, rate_sureness, share_matched, trust_depth, trust_free
+from threedfs.surface.trust import TrustRule, rate_sureness, share_matched, trust_aslant, trust_depth, trust_free
 from threedfs.texture.vertices import color_vertices, confirm_vertices, sample_vertices
 
 
@@ -116,10 +116,11 @@ def run(
     )
 
     def vote_of(name):
-        found = read_depth_map(paths[name])
+        said, found = trust.read(name), read_depth_map(paths[name])
         matched = matches_of(name, found.confidence, sureness)
-        free = trust_free(own[name], trust.read(name).too_far, matched, len(views), sureness, rule)
-        return views[name], found.depth, own[name], None, free
+        believed = trust_aslant(own[name], said.agree, rule)
+        free = trust_free(believed, said.too_far, matched, len(views), sureness, rule)
+        return views[name], found.depth, believed, None, free
 
     fused.add_all(vote_of(name) for name in job.progress.track(views, "keyframe"))
     confirmed = ConfirmedDepth(fused, clip, sureness, views, own, depth_of, job.threads)

@@ -27,6 +27,9 @@ class TrustRule:
     free_contradicted: float
     free_from: float
     free_full: float
+    aslant: float
+    aslant_from: float
+    aslant_full: float
 
 
 def share_matched(
@@ -74,6 +77,24 @@ def trust_depth(agree: np.ndarray, confidence: np.ndarray, matched: np.ndarray, 
     """
     seen = _rise(agree.astype(np.float64), rule.agree_from, rule.agree_full)
     return np.maximum(seen, _rise(matched, rule.matched_from, rule.matched_full) * confidence).astype(np.float32)
+
+
+def trust_aslant(trust: np.ndarray, agree: np.ndarray, rule: TrustRule) -> np.ndarray:
+    """Return the trust in a depth map's votes, (H, W) float32, above 1 where it holds though the surface turns away.
+
+    Not in the paper. A vote counts by how squarely a view faces the surface, so that of the views of a smooth face the
+    squarest decides alone, and its error stays. Where many views agree it is the mean of them that is right.
+
+    Parameters
+    ----------
+    trust : (H, W) float32
+        In the surface (`trust_depth`).
+    agree : (H, W) uint8
+        Views that have a surface where the pixel has it (`Agreement`).
+    rule : TrustRule
+    """
+    agreed = _rise(agree.astype(np.float64), rule.aslant_from, rule.aslant_full)
+    return np.maximum(trust, agreed / rule.aslant).astype(np.float32)
 
 
 def trust_free(
