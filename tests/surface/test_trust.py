@@ -17,9 +17,10 @@ RULE = TrustRule(
     free_contradicted=0.15,
     free_from=0.4,
     free_full=0.6,
-    aslant=0.5,
-    aslant_from=5.0,
-    aslant_full=9.0,
+    agreed_from=5.0,
+    agreed_full=9.0,
+    aslant_from=0.3,
+    aslant_full=0.7,
 )
 SHAPE = (40, 60)
 INSIDE = np.ones(SHAPE, bool)
@@ -79,10 +80,11 @@ def test_on_a_bare_object_matches_must_be_better():
 
 
 def test_depth_that_many_views_agree_on_is_trusted_though_the_surface_turns_away():
-    """Exact: half way up the ramp a vote reaches full trust seen squarely, from its end on at a cosine of a half."""
-    agree = np.uint8([5, 7, 9, 20, 0])
-    trust = np.float32([1.0, 0.4, 0.4, 1.0, 0.2])
-    np.testing.assert_allclose(trust_aslant(trust, agree, RULE), [1.0, 1.0, 2.0, 2.0, 0.2], atol=1e-6)
+    """Exact: times the cosine it is half of what is left half way up either ramp, full from 0.7 on, nothing at 0.3."""
+    agree, cosine = np.uint8([5, 7, 9, 20, 20, 20]), np.array([0.8, 0.8, 0.8, 0.7, 0.5, 0.3])
+    trust = np.float32([0.4, 0.4, 1.0, 0.0, 0.4, 0.4])
+    believed = trust_aslant(trust, agree, cosine, RULE)
+    np.testing.assert_allclose(believed * cosine, [0.32, 0.5, 1.0, 1.0, 0.5, 0.12], atol=1e-6)
 
 
 def test_space_that_few_contradict_is_free_however_few_agree():

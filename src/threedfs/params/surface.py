@@ -23,19 +23,23 @@ class SurfaceParams(SmoothingSettings):
         2.0, "views that agree with a depth up to which it is not trusted for it", minimum=0.0
     )
     agree_full: float = parameter(8.0, "views that agree with a depth from which it is trusted fully", minimum=0.0)
-    aslant: float = parameter(
-        0.5,
-        "cosine between normal and ray from which on a vote counts fully where many views agree with its depth; 1: as "
-        "squarely as the view faces the surface, as elsewhere",
-        exclusive_minimum=0.0,
-        maximum=1.0,
-    )
-    aslant_from: float = parameter(
+    agreed_from: float = parameter(
         5.0,
         "views that agree with a depth up to which its vote counts as squarely as it faces the surface",
         minimum=0.0,
     )
-    aslant_full: float = parameter(9.0, "views that agree with a depth from which aslant holds", minimum=0.0)
+    agreed_full: float = parameter(
+        9.0, "views that agree with a depth from which its vote counts by aslant_from and aslant_full", minimum=0.0
+    )
+    aslant_from: float = parameter(
+        0.3,
+        "cosine between normal and ray up to which such a vote counts no more than others",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    aslant_full: float = parameter(
+        0.7, "cosine between normal and ray from which such a vote counts fully", minimum=0.0, maximum=1.0
+    )
     matched: float = parameter(
         0.01,
         "photometric confidence from which the photographs of a pixel match, on an object whose depth is sure",

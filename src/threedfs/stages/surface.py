@@ -9,6 +9,7 @@ from typing import Any
 from threedfs.crops.place import measure_object
 from threedfs.errors import UserError
 from threedfs.fusion.fuse import VoteRule, limit_clip_distance, start_fusion
+from threedfs.fusion.softmax import facing_cosine
 from threedfs.hull.grid import lay_grid
 from threedfs.io.appearance import read_appearance
 from threedfs.io.colored_meshes import write_colored_mesh
@@ -118,7 +119,8 @@ def run(
     def vote_of(name):
         said, found = trust.read(name), read_depth_map(paths[name])
         matched = matches_of(name, found.confidence, sureness)
-        believed = trust_aslant(own[name], said.agree, rule)
+        cosine = facing_cosine(views[name].camera, found.depth)
+        believed = trust_aslant(own[name], said.agree, cosine, rule)
         free = trust_free(believed, said.too_far, matched, len(views), sureness, rule)
         return views[name], found.depth, believed, None, free
 

@@ -27,7 +27,8 @@ class TrustRule:
     free_contradicted: float
     free_from: float
     free_full: float
-    aslant: float
+    agreed_from: float
+    agreed_full: float
     aslant_from: float
     aslant_full: float
 
@@ -79,11 +80,12 @@ def trust_depth(agree: np.ndarray, confidence: np.ndarray, matched: np.ndarray, 
     return np.maximum(seen, _rise(matched, rule.matched_from, rule.matched_full) * confidence).astype(np.float32)
 
 
-def trust_aslant(trust: np.ndarray, agree: np.ndarray, rule: TrustRule) -> np.ndarray:
+def trust_aslant(trust: np.ndarray, agree: np.ndarray, cosine: np.ndarray, rule: TrustRule) -> np.ndarray:
     """Return the trust in a depth map's votes, (H, W) float32, above 1 where it holds though the surface turns away.
 
     Not in the paper. A vote counts by how squarely a view faces the surface, so that of the views of a smooth face the
-    squarest decides alone, and its error stays. Where many views agree it is the mean of them that is right.
+    squarest decides nearly alone, and its error stays. Where many views agree it is the mean of them that is right, but
+    for those that see the surface graze by: their depth is too far.
 
     Parameters
     ----------
@@ -91,10 +93,13 @@ def trust_aslant(trust: np.ndarray, agree: np.ndarray, rule: TrustRule) -> np.nd
         In the surface (`trust_depth`).
     agree : (H, W) uint8
         Views that have a surface where the pixel has it (`Agreement`).
+    cosine : (H, W) float64
+        Between the surface's normal and the ray to it, by which votes are multiplied (`facing_cosine`).
     rule : TrustRule
     """
-    agreed = _rise(agree.astype(np.float64), rule.aslant_from, rule.aslant_full)
-    return np.maximum(trust, agreed / rule.aslant).astype(np.float32)
+    agreed = _rise(agree.astype(np.float64), rule.agreed_from, rule.agreed_full)
+    square = _rise(cosine, rule.aslant_from, rule.aslant_full)
+    return np.maximum(trust, agreed * square / np.maximum(cosine, 1e-3)).astype(np.float32)
 
 
 def trust_free(
