@@ -80,7 +80,7 @@ def test_on_a_bare_object_matches_must_be_better():
 
 
 def test_depth_that_many_views_agree_on_is_trusted_though_the_surface_turns_away():
-    """Exact: times the cosine it is half of what is left half way up either ramp, full from 0.7 on, nothing at 0.3."""
+    """Exact: times the cosine, half way up either ramp it is a half, at the end of both full, at 0.3 as before."""
     agree, cosine = np.uint8([5, 7, 9, 20, 20, 20]), np.array([0.8, 0.8, 0.8, 0.7, 0.5, 0.3])
     trust = np.float32([0.4, 0.4, 1.0, 0.0, 0.4, 0.4])
     believed = trust_aslant(trust, agree, cosine, RULE)

@@ -105,7 +105,7 @@ def trust_aslant(trust: np.ndarray, agree: np.ndarray, cosine: np.ndarray, rule:
 def trust_free(
     trust: np.ndarray, too_far: np.ndarray, matched: np.ndarray, keyframes: int, sureness: float, rule: TrustRule
 ) -> np.ndarray:
-    """Return the trust that the space before a depth map's surface is free, (H, W) float32 in [0, 1].
+    """Return the trust that the space before a depth map's surface is free, (H, W) float32, no less than `trust`.
 
     Not in the paper. Between spines and in hollows hardly two views have the same depth, mostly as it is too near; but
     the space before it is free all the same, unless others have a surface there. That none has says little where few
@@ -114,7 +114,7 @@ def trust_free(
     Parameters
     ----------
     trust : (H, W) float32
-        In the surface (`trust_depth`).
+        In the surface, as its votes count (`trust_aslant`).
     too_far : (H, W) uint8
         Views that have a surface before it (`Agreement`).
     matched : (H, W) float64
