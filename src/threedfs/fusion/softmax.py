@@ -36,10 +36,10 @@ class SoftMaximum(ViewFusion):
     clip distance: near the surface the vote tells where it lies, deeper only that something lies before it, which is
     no evidence against a view that sees the voxel, as behind a thin part. Then no high h is needed for views that
     see a voxel to prevail, and with a low one it is their mean: a maximum takes the one that errs most. Trust
-    is the confidence times how squarely the view faces the surface (`facing`), 1 at most, smoothed (`trust_blur`); votes for
-    space that other views leave free are trusted fully from 1 + `_FREE_RAMP` clip distances on, and all votes for space
-    before the surface by another confidence, where one is given. Without confidence every vote counts the same, as in
-    the paper.
+    is the confidence times how squarely the view faces the surface (`facing`), 1 at most, smoothed (`trust_blur`);
+    votes for space that other views leave free are trusted fully from 1 + `_FREE_RAMP` clip distances on, and all votes
+    for space before the surface by another confidence, where one is given. Without confidence every vote counts the
+    same, as in the paper.
 
     Differs from the paper always: the sums of Eq. 15 run over the views that see a voxel, not over all, since the
     others have no S_i; and depth is not interpolated across its discontinuities (`sample_inverse_depth`).
