@@ -37,6 +37,8 @@ from threedfs.types import Box, Keyframe, Plane, Support, VoxelGrid
 SIDE = 44
 BEHIND = 1.12
 """Depth in a pit over the true depth."""
+LITTLE_BEHIND = 1.008
+"""The same of views that may adopt what others have found."""
 FAR_BEHIND = 1.6
 """The same where a side is lost: depth of what lies beyond it."""
 
@@ -67,24 +69,30 @@ def shows_sphere(table, view, depth):
     return np.linalg.norm(points - table.centre, axis=-1) < table.radius + 1e-6
 
 
-def write_scene(folder, table, *, pit=False, lost=False, empty=False):
+def write_scene(folder, table, *, pit=False, lost=False, lent=False, empty=False):
     """Write what the stage reads.
 
     With a pit, one side of the sphere is bare, and its depth too far away; with that side lost, all views agree on it.
+    With depth that is lent there, every third view is right.
     """
     views, maps, masks, photos = table.views, {}, {}, {}
+    behind = FAR_BEHIND if lost else LITTLE_BEHIND if lent else BEHIND
     for rank, view in enumerate(views):
         depth = table.depth(view)
         masks[view.name] = shows_sphere(table, view, depth) & (not empty)
         photos[view.name] = photograph(shows_sphere(table, view, depth))
         points = backproject_map(view, depth)
-        bare = masks[view.name] & (points[..., 0] > table.centre[0] + 0.4 * table.radius) & (pit or lost)
-        depth = np.where(bare, (FAR_BEHIND if lost else BEHIND) * depth, depth).astype(np.float32)
+        bare = (
+            masks[view.name]
+            & (points[..., 0] > table.centre[0] + 0.4 * table.radius)
+            & (pit or lost or (lent and rank % 3 > 0))
+        )
+        depth = np.where(bare, behind * depth, depth).astype(np.float32)
         photometric = np.where(bare, 0.0, 0.3).astype(np.float32)
         write_depth_map(folder / "depth" / f"{view.name}.zarr.zip", DepthMap(depth, 0 * photometric, photometric), {})
-        agree = np.where(bare & pit, 1 + rank % 2, 9).astype(np.uint8)
+        agree = np.where(bare & (pit or lent), 1 + rank % 2, 9).astype(np.uint8)
         silent, free = np.zeros_like(agree), np.zeros(agree.shape, np.float32)
-        share = np.where(bare & pit, 0.7, 1.0).astype(np.float32)
+        share = np.where(bare & (pit or lent), 0.7, 1.0).astype(np.float32)
         maps[view.name] = ConsistencyMap(
             confidence=share, agree=agree, too_near=silent, too_far=silent, free_depth=free
         )
@@ -213,6 +221,39 @@ def test_the_same_bytes_twice(pitted):
 )
 def test_every_parameter_acts(pitted, change):
     assert work(pitted, **change)[1][0] != work(pitted)[1][0]
+
+
+@pytest.fixture(scope="module")
+def lending(table, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("lending")
+    write_scene(folder, table, lent=True)
+    return folder
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"lent_from": 10.0},
+        {"adopted_within": 0.001},
+        {"adopted_reach": 0.1},
+        {"adopted_full": 0.0, "adopted_from": 0.0},
+        {"adopted_from": 0.4},
+    ],
+    ids=str,
+)
+def test_every_parameter_of_what_is_adopted_acts(lending, change):
+    assert work(lending, frames=0, **change)[1][0] != work(lending, frames=0)[1][0]
+
+
+def test_a_bare_side_is_where_others_have_found_it(lending, table):
+    """Property: with all depth believed, what is adopted takes most of the error of the side's depth away."""
+    found = []
+    for change in ({}, {"adopted_full": 0.0, "adopted_from": 0.0}):
+        believed = {"agree_from": 0.0, "agree_full": 1.0, "hull_trust": 0.0, "sure_hull_trust": 0.0, "frames": 0}
+        mesh, _ = work(lending, **believed, **change)
+        beside = mesh.vertices[mesh.vertices[:, 0] > table.centre[0] + 0.5 * table.radius]
+        found.append(np.median(1 - np.linalg.norm(beside - table.centre, axis=1) / table.radius))
+    assert found[0] < 0.5 * found[1]
 
 
 def test_without_masks_it_is_refused(table, tmp_path):

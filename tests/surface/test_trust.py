@@ -10,6 +10,7 @@ RULE = TrustRule(
     agree_full=5.0,
     matched=0.01,
     bare_matched=0.03,
+    matched_reach=0.05,
     matched_from=0.1,
     matched_full=0.4,
     sure_from=0.5,

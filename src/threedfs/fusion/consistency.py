@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit, prange
 from scipy.ndimage import minimum_filter
 
+from threedfs.geometry.transfer import px_from_px, transfer
 from threedfs.types import View
 
 _BLOCK = 8  # depth maps that are compared with each other one read: they and their counts are in memory
@@ -129,8 +130,8 @@ def compare_depth(
                 seen,
                 _local_minimum(seen),
                 _extend(may_contradict(other), canvas, False),
-                np.stack([_px_from_px(views[other], views[i]) for i in block]),
-                np.stack([_px_from_px(views[i], views[other]) for i in block]),
+                np.stack([px_from_px(views[other], views[i]) for i in block]),
+                np.stack([px_from_px(views[i], views[other]) for i in block]),
                 np.array([other in partners[i] for i in block]),
                 rule.tolerance,
                 counts,
@@ -211,28 +212,9 @@ def _extend(values: np.ndarray, shape: tuple[int, int], missing: float | bool) -
     return canvas
 
 
-def _px_from_px(target: View, source: View) -> np.ndarray:
-    """(3, 4) matrix: depth * (u, v, 1) of the source, and 1, to homogeneous pixels of the target."""
-    rotation = target.cam_from_world[:3, :3] @ source.cam_from_world[:3, :3].T
-    translation = target.cam_from_world[:3, 3] - rotation @ source.cam_from_world[:3, 3]
-    cam_from_px = np.linalg.inv(source.camera.px_from_cam)
-    return target.camera.px_from_cam @ np.column_stack([rotation @ cam_from_px, translation])
-
-
 def _local_minimum(depth: np.ndarray) -> np.ndarray:
     """Least depth in 3x3: a point beside a silhouette is not in front of the background it is rounded onto."""
     return minimum_filter(np.where(np.isnan(depth), np.inf, depth), size=3, mode="nearest").astype(np.float32)
-
-
-@njit(cache=True)
-def _transfer(matrix, u, v, depth):
-    a = matrix[0, 0] * u + matrix[0, 1] * v + matrix[0, 2]
-    b = matrix[1, 0] * u + matrix[1, 1] * v + matrix[1, 2]
-    c = matrix[2, 0] * u + matrix[2, 1] * v + matrix[2, 2]
-    z = depth * c + matrix[2, 3]
-    if not z > 0:
-        return np.nan, np.nan, np.nan
-    return (depth * a + matrix[0, 3]) / z, (depth * b + matrix[1, 3]) / z, z
 
 
 @njit(cache=True, parallel=True)
@@ -247,7 +229,7 @@ def _compare(
         agrees = np.zeros((rows, columns), np.uint8)
         for row in range(rows):
             for column in range(columns):
-                u, v, z = _transfer(there[slot], column, row, depth[slot, row, column])
+                u, v, z = transfer(there[slot], column, row, depth[slot, row, column])
                 if u > -0.5 and v > -0.5 and u < columns - 0.5 and v < rows - 0.5:
                     other_row, other_column = int(v + 0.5), int(u + 0.5)
                     seen = other_depth[other_row, other_column]
@@ -261,7 +243,7 @@ def _compare(
                         counts[1, slot, row, column] += 1
                 if not other_speaks[row, column]:
                     continue
-                u, v, z = _transfer(back[slot], column, row, other_depth[row, column])
+                u, v, z = transfer(back[slot], column, row, other_depth[row, column])
                 if u > -0.5 and v > -0.5 and u < columns - 0.5 and v < rows - 0.5:
                     own_row, own_column = int(v + 0.5) + 1, int(u + 0.5) + 1
                     rendered[own_row, own_column] = min(rendered[own_row, own_column], z)

@@ -95,6 +95,33 @@ class SurfaceParams(SmoothingSettings):
         maximum=1.0,
     )
     free_full: float = parameter(0.6, "share of such pixels from which that space is free", minimum=0.0, maximum=1.0)
+    lent_from: float = parameter(
+        6.0,
+        "views that agree with a depth from which other keyframes may adopt it; none may on a bare object",
+        minimum=1.0,
+    )
+    adopted_within: float = parameter(
+        0.015,
+        "relative difference from a keyframe's own depth up to which it may",
+        exclusive_minimum=0.0,
+        maximum=1.0,
+    )
+    adopted_reach: float = parameter(
+        0.006,
+        "standard deviation of the neighbourhood over which what is adopted is averaged",
+        unit="length of the object in the image",
+        exclusive_minimum=0.0,
+    )
+    adopted_full: float = parameter(
+        0.5,
+        "share of matched pixels around one up to which depth that others have found is adopted fully; with "
+        "adopted_from 0 nothing is",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    adopted_from: float = parameter(
+        0.7, "share of matched pixels around one from which a keyframe keeps its own depth", minimum=0.0, maximum=1.0
+    )
     hull_trust: float = parameter(
         0.45,
         "trust that the hull of the masks counts as much as, against depth, on a bare object",

@@ -9,7 +9,6 @@ from typing import Any
 from threedfs.crops.place import measure_object
 from threedfs.errors import UserError
 from threedfs.fusion.fuse import VoteRule, limit_clip_distance, start_fusion
-from threedfs.fusion.softmax import facing_cosine
 from threedfs.hull.grid import lay_grid
 from threedfs.io.appearance import read_appearance
 from threedfs.io.colored_meshes import write_colored_mesh
@@ -32,10 +31,11 @@ from threedfs.read_ahead import map_ahead
 from threedfs.segment.frame_mask import mask_frame, spread_frames
 from threedfs.segment.gather import pixels_at
 from threedfs.segment.refine import RefineRule
+from threedfs.surface.adopt import AdoptRule
 from threedfs.surface.complete import HullRule
-from threedfs.surface.confirmed import ConfirmedDepth
+from threedfs.surface.confirmed import KeyframeDepth, confirm_depth
 from threedfs.surface.shape import ShapeRule, shape_surface
-from threedfs.surface.trust import TrustRule, rate_sureness, share_matched, trust_aslant, trust_depth, trust_free
+from threedfs.surface.trust import TrustRule
 from threedfs.texture.vertices import color_vertices, confirm_vertices, sample_vertices
 
 
@@ -86,46 +86,44 @@ def run(
     grid = lay_grid(place.box, place.plane, cut.masks, views, valid, loosest, params.longest_side)
     fused_as = make_params(FuseObjectParams, fusion)
     paths = {path.name.removesuffix(".zarr.zip"): path for path in depth}
-    rule, corners = make_rule(TrustRule, params), place.box.corners()
-
-    def depth_of(name):
-        return read_depth_map(paths[name]).depth
-
-    def matches_of(name, photometric, sureness):
-        length = read_object_pixels(keyframes, name) or measure_object([views[name]], corners) or 0.0
-        return share_matched(photometric, cut.masks[name], params.matched_reach * length, rule, sureness)
-
-    def trust_of(name, sureness=0.0):
-        said, found = trust.read(name), read_depth_map(paths[name])
-        return trust_depth(said.agree, said.confidence, matches_of(name, found.confidence, sureness), rule)
-
-    own = dict(zip(views, map_ahead(trust_of, views, threads=job.threads), strict=True))
-    sureness = rate_sureness(own.values(), (cut.masks[name] for name in own), rule)
-    if sureness > 0 and params.bare_matched != params.matched:
-        own = {name: trust_of(name, sureness) for name in own}
+    corners = place.box.corners()
     voxel = cut.grid.spacing  # of the object's grid: settings of fuse_object count in its voxels
-    share = 1 - sureness * (1 - params.sure_clip_share)
-    clip = limit_clip_distance(
-        max(2.0, share * fused_as.clip_distance), place.figures["thickness"], share * fused_as.thickness_share, voxel
-    )
-    fused = start_fusion(
-        grid,
-        clip,
-        make_rule(VoteRule, fused_as),
-        hidden_distance=share * fused_as.hidden_distance * voxel,
+
+    def read(name):
+        found, said = read_depth_map(paths[name]), trust.read(name)
+        length = read_object_pixels(keyframes, name) or measure_object([views[name]], corners) or 0.0
+        return KeyframeDepth(
+            views[name],
+            cut.masks[name],
+            length,
+            found.depth,
+            found.confidence,
+            said.agree,
+            said.too_far,
+            said.confidence,
+        )
+
+    def start(sureness):
+        share = 1 - sureness * (1 - params.sure_clip_share)
+        clip = limit_clip_distance(
+            max(2.0, share * fused_as.clip_distance),
+            place.figures["thickness"],
+            share * fused_as.thickness_share,
+            voxel,
+        )
+        hidden = share * fused_as.hidden_distance * voxel
+        votes = start_fusion(grid, clip, make_rule(VoteRule, fused_as), hidden_distance=hidden, threads=job.threads)
+        return votes, clip
+
+    confirmed = confirm_depth(
+        views,
+        read,
+        start,
+        make_rule(TrustRule, params),
+        make_rule(AdoptRule, params),
+        track=lambda names: job.progress.track(names, "keyframe"),
         threads=job.threads,
     )
-
-    def vote_of(name):
-        said, found = trust.read(name), read_depth_map(paths[name])
-        matched = matches_of(name, found.confidence, sureness)
-        cosine = facing_cosine(views[name].camera, found.depth)
-        believed = trust_aslant(own[name], said.agree, cosine, rule)
-        free = trust_free(believed, said.too_far, matched, len(views), sureness, rule)
-        return views[name], found.depth, believed, None, free
-
-    fused.add_all(vote_of(name) for name in job.progress.track(views, "keyframe"))
-    confirmed = ConfirmedDepth(fused, clip, sureness, views, own, depth_of, job.threads)
     shaping = make_rule(ShapeRule, params, complete=make_rule(HullRule, params))
     surface = shape_surface(confirmed, place.plane, cut.masks, views, valid, shaping)
     learnt, cut_as = read_appearance(appearance), make_params(SegmentParams, segmentation)
@@ -160,7 +158,7 @@ def run(
     seen_by = list(views.values())
     samples = sample_vertices(surface, seen_by, images.image, valid.__getitem__)
     write_colored_mesh(mesh, surface, color_vertices(surface, samples), {"confirmed": confirm_vertices(samples)})
-    job.progress.note(f"{method}: depth is sure by {sureness:.2f}; {len(surface.faces)} triangles")
+    job.progress.note(f"{method}: depth is sure by {confirmed.sureness:.2f}; {len(surface.faces)} triangles")
     posed = read_poses(poses)
     whole = {view.name: view for view in posed.views}
     drawn = outline(surface, views, params.mask_ramp)

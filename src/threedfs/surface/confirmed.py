@@ -2,13 +2,47 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
-from threedfs.fusion.softmax import SoftMaximum
+from threedfs.fusion.softmax import SoftMaximum, facing_cosine
+from threedfs.read_ahead import map_ahead
+from threedfs.surface.adopt import AdoptRule, LentDepth, adopt_depth, lend_depth
+from threedfs.surface.trust import TrustRule, rate_sureness, share_matched, trust_aslant, trust_depth, trust_free
 from threedfs.types import View
+
+
+@dataclass(frozen=True)
+class KeyframeDepth:
+    """The depth of one keyframe, and what photographs and other views say of it.
+
+    Attributes
+    ----------
+    view : View
+    mask : (H, W) bool
+        The object.
+    length : float
+        Of the object in the image, pixels.
+    depth : (H, W) float32
+        Scene units, NaN where missing.
+    photometric : (H, W) float32
+        Confidence by the keyframe's own photographs (3.2, Eq. 11).
+    agree, too_far : (H, W) uint8
+        See `Agreement`.
+    confidence : (H, W) float32
+        Share of agreement, in [0, 1] (`rate_confidence`).
+    """
+
+    view: View
+    mask: np.ndarray
+    length: float
+    depth: np.ndarray
+    photometric: np.ndarray
+    agree: np.ndarray
+    too_far: np.ndarray
+    confidence: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -39,3 +73,79 @@ class ConfirmedDepth:
     trust: Mapping[str, np.ndarray]
     read: Callable[[str], np.ndarray]
     threads: int = 1
+
+
+def confirm_depth(
+    views: Mapping[str, View],
+    read: Callable[[str], KeyframeDepth],
+    start: Callable[[float], tuple[SoftMaximum, float]],
+    trust: TrustRule,
+    adopt: AdoptRule,
+    *,
+    track: Callable[[Iterable], Iterable] = iter,
+    threads: int = 1,
+) -> ConfirmedDepth:
+    """Fuse depth maps whose pixels count by how well they are confirmed.
+
+    Not in the paper.
+
+    Parameters
+    ----------
+    views : mapping of str to View
+        Of the keyframes.
+    read : callable
+        Gives what is known of a keyframe's depth by its name; few are held at a time.
+    start : callable
+        Gives votes to add to, still empty, and their clip distance in scene units, by the sureness of the object's
+        depth.
+    trust : TrustRule
+    adopt : AdoptRule
+        Acts where the object's depth is sure at all: on a bare object, wrong depth spreads.
+    track : callable
+        Wraps the loop over keyframes to report progress.
+    threads : int
+        Cores used; the result does not depend on it.
+    """
+    first = dict(
+        zip(views, map_ahead(lambda name: _lend(read(name), trust, adopt), views, threads=threads), strict=True)
+    )
+    own = {name: trusted for name, (trusted, _, _) in first.items()}
+    lent = {name: held for name, (_, _, held) in first.items()}
+    sureness = rate_sureness(own.values(), (mask for _, mask, _ in first.values()), trust)
+    adopted: dict[str, np.ndarray] = {}
+    if sureness > 0:
+
+        def adopt_of(name: str) -> tuple[np.ndarray, np.ndarray]:
+            found = read(name)
+            others = (held for other, held in lent.items() if other != name)
+            matched = _match(found, sureness, trust)
+            depth = adopt_depth(found.view, found.depth, matched, found.mask, others, found.length, adopt)
+            return depth, trust_depth(found.agree, found.confidence, matched, trust)
+
+        for name, (depth, trusted) in zip(views, map_ahead(adopt_of, views, threads=threads), strict=True):
+            adopted[name], own[name] = depth, trusted
+
+    def read_depth(name: str) -> np.ndarray:
+        return adopted[name] if adopted else read(name).depth
+
+    fused, clip_distance = start(sureness)
+
+    def vote_of(name: str):
+        found, depth = read(name), read_depth(name)
+        believed = trust_aslant(own[name], found.agree, facing_cosine(found.view.camera, depth), trust)
+        matched = _match(found, sureness, trust)
+        free = trust_free(believed, found.too_far, matched, len(views), sureness, trust)
+        return found.view, depth, believed, None, free
+
+    fused.add_all(vote_of(name) for name in track(views))
+    return ConfirmedDepth(fused, clip_distance, sureness, views, own, read_depth, threads)
+
+
+def _lend(found: KeyframeDepth, trust: TrustRule, adopt: AdoptRule) -> tuple[np.ndarray, np.ndarray, LentDepth]:
+    """Return the trust in a depth map as of a bare object, where the object is, and what the map lends."""
+    own = trust_depth(found.agree, found.confidence, _match(found, 0.0, trust), trust)
+    return own, found.mask, lend_depth(found.view, found.depth, found.agree, found.confidence, found.mask, adopt)
+
+
+def _match(found: KeyframeDepth, sureness: float, trust: TrustRule) -> np.ndarray:
+    return share_matched(found.photometric, found.mask, trust.matched_reach * found.length, trust, sureness)

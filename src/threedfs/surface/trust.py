@@ -20,6 +20,7 @@ class TrustRule:
     agree_full: float
     matched: float
     bare_matched: float
+    matched_reach: float
     matched_from: float
     matched_full: float
     sure_from: float
@@ -76,8 +77,8 @@ def trust_depth(agree: np.ndarray, confidence: np.ndarray, matched: np.ndarray, 
         Share of matches around (`share_matched`).
     rule : TrustRule
     """
-    seen = _rise(agree.astype(np.float64), rule.agree_from, rule.agree_full)
-    return np.maximum(seen, _rise(matched, rule.matched_from, rule.matched_full) * confidence).astype(np.float32)
+    seen = rise(agree.astype(np.float64), rule.agree_from, rule.agree_full)
+    return np.maximum(seen, rise(matched, rule.matched_from, rule.matched_full) * confidence).astype(np.float32)
 
 
 def trust_aslant(trust: np.ndarray, agree: np.ndarray, cosine: np.ndarray, rule: TrustRule) -> np.ndarray:
@@ -97,8 +98,8 @@ def trust_aslant(trust: np.ndarray, agree: np.ndarray, cosine: np.ndarray, rule:
         Between the surface's normal and the ray to it, by which votes are multiplied (`facing_cosine`).
     rule : TrustRule
     """
-    agreed = _rise(agree.astype(np.float64), rule.agreed_from, rule.agreed_full)
-    square = _rise(cosine, rule.aslant_from, rule.aslant_full)
+    agreed = rise(agree.astype(np.float64), rule.agreed_from, rule.agreed_full)
+    square = rise(cosine, rule.aslant_from, rule.aslant_full)
     return np.maximum(trust, agreed * square / np.maximum(cosine, 1e-3)).astype(np.float32)
 
 
@@ -125,8 +126,8 @@ def trust_free(
         Of the object's depth, in [0, 1] (`rate_sureness`).
     rule : TrustRule
     """
-    free = (too_far < rule.free_contradicted * keyframes) * _rise(matched, rule.free_from, rule.free_full)
-    return np.maximum(trust, _rise(sureness, _BARE, _SURE) * free).astype(np.float32)
+    free = (too_far < rule.free_contradicted * keyframes) * rise(matched, rule.free_from, rule.free_full)
+    return np.maximum(trust, rise(sureness, _BARE, _SURE) * free).astype(np.float32)
 
 
 def rate_sureness(trust: Iterable[np.ndarray], masks: Iterable[np.ndarray], rule: TrustRule) -> float:
@@ -143,9 +144,9 @@ def rate_sureness(trust: Iterable[np.ndarray], masks: Iterable[np.ndarray], rule
     rule : TrustRule
     """
     means = [own[mask].mean(dtype=np.float64) for own, mask in zip(trust, masks, strict=True) if mask.any()]
-    return float(_rise(np.mean(means), rule.sure_from, rule.sure_full))
+    return float(rise(np.mean(means), rule.sure_from, rule.sure_full))
 
 
-def _rise(values: np.ndarray, start: float, full: float) -> np.ndarray:
+def rise(values: np.ndarray, start: float, full: float) -> np.ndarray:
     """Return 1 from `full` on, 0 up to `start`, and a line between; `full` decides where they do not leave room."""
     return np.where(np.asarray(values) >= full, 1.0, np.clip((values - start) / max(full - start, 1e-9), 0.0, 1.0))

@@ -1,0 +1,162 @@
+"""Depth that a keyframe adopts from others where its own photographs do not match."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+from numba import njit
+from scipy.ndimage import gaussian_filter
+
+from threedfs.geometry.transfer import px_from_px, transfer
+from threedfs.surface.trust import rise
+from threedfs.types import View
+
+_LEAST_COSINE = 0.3
+"""Between normal and ray: what is turned away is the back of something thin, or seen too flatly to count pixels of."""
+_LEAST_CONFIDENCE = 0.5
+"""Share of agreement below which depth is not lent, however many agree."""
+_ENOUGH = 1.0
+"""Points around a pixel, on the mean over pixels, from which what they say is adopted fully."""
+
+
+@dataclass(frozen=True)
+class AdoptRule:
+    """When depth is lent and adopted; `SurfaceParams` says more of each value."""
+
+    lent_from: float
+    adopted_within: float
+    adopted_reach: float
+    adopted_full: float
+    adopted_from: float
+
+
+@dataclass(frozen=True)
+class LentDepth:
+    """A depth map that others may adopt.
+
+    Attributes
+    ----------
+    view : View
+    depth : (H, W) float32
+        Scene units, NaN where missing.
+    lends : (H, W) bool
+        Where others may.
+    """
+
+    view: View
+    depth: np.ndarray
+    lends: np.ndarray
+
+
+def lend_depth(
+    view: View, depth: np.ndarray, agree: np.ndarray, confidence: np.ndarray, mask: np.ndarray, rule: AdoptRule
+) -> LentDepth:
+    """Return what a depth map of the object may lend to others: what many views agree on.
+
+    Not in the paper.
+
+    Parameters
+    ----------
+    view : View
+    depth : (H, W) float32
+    agree : (H, W) uint8
+    confidence : (H, W) float32
+        Share of agreement, in [0, 1] (`rate_confidence`).
+    mask : (H, W) bool
+        The object.
+    rule : AdoptRule
+    """
+    return LentDepth(view, depth, mask & (agree >= rule.lent_from) & (confidence >= _LEAST_CONFIDENCE))
+
+
+def adopt_depth(
+    view: View,
+    depth: np.ndarray,
+    matched: np.ndarray,
+    mask: np.ndarray,
+    lent: Iterable[LentDepth],
+    length: float,
+    rule: AdoptRule,
+) -> np.ndarray:
+    """Return a depth map (H, W) float32, moved to what other views have found where few of its own photographs match.
+
+    Not in the paper. Nothing but smoothness holds depth where no photograph matches, so that it swings to one side or
+    the other, by more than views may differ and agree. What others have found and many agree on is drawn into the view,
+    point by point, where it is turned to it and near to the view's own depth, and the mean over some pixels around is
+    adopted. How far the pixel is trusted is not: all who adopt the same error would agree on it.
+
+    Parameters
+    ----------
+    view : View
+    depth : (H, W) float32
+        Scene units, NaN where missing.
+    matched : (H, W) float64
+        Share of matches around (`share_matched`).
+    mask : (H, W) bool
+        The object, outside of which nothing is adopted.
+    lent : iterable of LentDepth
+        Of the other views.
+    length : float
+        Of the object in the image, pixels.
+    rule : AdoptRule
+    """
+    bare = np.where(mask, 1 - rise(matched, rule.adopted_full, rule.adopted_from), 0.0)
+    if not bare.any():
+        return depth
+    points = np.zeros((2, *depth.shape))  # their number, and the sum of their relative offsets
+    for other in lent:
+        _draw(
+            px_from_px(view, other.view),
+            np.linalg.inv(other.view.camera.px_from_cam),
+            other.view.cam_from_world[:3] @ np.append(view.centre, 1.0),
+            other.depth,
+            other.lends,
+            depth,
+            bare,
+            rule.adopted_within,
+            points,
+        )
+    reach = rule.adopted_reach * length
+    number, offset = (gaussian_filter(item, reach) for item in points)
+    open_to_it = gaussian_filter((bare > 0).astype(np.float64), reach)
+    share = bare * np.minimum(1, number / np.maximum(_ENOUGH * open_to_it, 1e-3))
+    return (depth * (1 + share * offset / np.maximum(number, 1e-6))).astype(np.float32)
+
+
+@njit(cache=True, nogil=True)
+def _draw(matrix, cam_from_px, centre, depth, lends, own_depth, bare, within, points):
+    rows, columns = depth.shape
+    for row in range(1, rows - 1):
+        for column in range(1, columns - 1):
+            if not lends[row, column]:
+                continue
+            u, v, z = transfer(matrix, column, row, depth[row, column])
+            if not (u > -0.5 and v > -0.5 and u < bare.shape[1] - 0.5 and v < bare.shape[0] - 0.5):
+                continue
+            own_row, own_column = int(v + 0.5), int(u + 0.5)
+            offset = z / own_depth[own_row, own_column] - 1
+            if not (bare[own_row, own_column] > 0 and abs(offset) < within):
+                continue
+            if _cosine_to(cam_from_px, centre, depth, row, column) > _LEAST_COSINE:
+                points[0, own_row, own_column] += 1
+                points[1, own_row, own_column] += offset
+
+
+@njit(cache=True, nogil=True)
+def _cosine_to(cam_from_px, centre, depth, row, column):
+    """Return the cosine between a depth map's normal, which faces its own camera, and the ray to another's centre."""
+    across = _point(cam_from_px, depth, row, column + 1) - _point(cam_from_px, depth, row, column - 1)
+    down = _point(cam_from_px, depth, row + 1, column) - _point(cam_from_px, depth, row - 1, column)
+    here = _point(cam_from_px, depth, row, column)
+    normal = np.cross(across, down)
+    if normal @ here > 0:
+        normal = -normal
+    ray = centre - here
+    return normal @ ray / np.sqrt((normal @ normal) * (ray @ ray))
+
+
+@njit(cache=True, nogil=True)
+def _point(cam_from_px, depth, row, column):
+    return depth[row, column] * (cam_from_px @ np.array([float(column), float(row), 1.0]))
