@@ -97,7 +97,7 @@ class SurfaceParams(SmoothingSettings):
     free_full: float = parameter(0.6, "share of such pixels from which that space is free", minimum=0.0, maximum=1.0)
     lent_from: float = parameter(
         6.0,
-        "views that agree with a depth from which other keyframes may adopt it; none may on a bare object",
+        "views that agree with a depth from which other keyframes may adopt it",
         minimum=1.0,
     )
     adopted_within: float = parameter(

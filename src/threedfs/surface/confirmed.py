@@ -100,7 +100,6 @@ def confirm_depth(
         depth.
     trust : TrustRule
     adopt : AdoptRule
-        Acts where the object's depth is sure at all: on a bare object, wrong depth spreads.
     track : callable
         Wraps the loop over keyframes to report progress.
     threads : int
@@ -112,33 +111,28 @@ def confirm_depth(
     own = {name: trusted for name, (trusted, _, _) in first.items()}
     lent = {name: held for name, (_, _, held) in first.items()}
     sureness = rate_sureness(own.values(), (mask for _, mask, _ in first.values()), trust)
+
+    def adopt_of(name: str) -> tuple[np.ndarray, np.ndarray]:
+        found = read(name)
+        others = (held for other, held in lent.items() if other != name)
+        matched = _match(found, sureness, trust)
+        depth = adopt_depth(found.view, found.depth, matched, found.mask, others, found.length, adopt)
+        return depth, trust_depth(found.agree, found.confidence, matched, trust)
+
     adopted: dict[str, np.ndarray] = {}
-    if sureness > 0:
-
-        def adopt_of(name: str) -> tuple[np.ndarray, np.ndarray]:
-            found = read(name)
-            others = (held for other, held in lent.items() if other != name)
-            matched = _match(found, sureness, trust)
-            depth = adopt_depth(found.view, found.depth, matched, found.mask, others, found.length, adopt)
-            return depth, trust_depth(found.agree, found.confidence, matched, trust)
-
-        for name, (depth, trusted) in zip(views, map_ahead(adopt_of, views, threads=threads), strict=True):
-            adopted[name], own[name] = depth, trusted
-
-    def read_depth(name: str) -> np.ndarray:
-        return adopted[name] if adopted else read(name).depth
-
+    for name, (depth, trusted) in zip(views, map_ahead(adopt_of, views, threads=threads), strict=True):
+        adopted[name], own[name] = depth, trusted
     fused, clip_distance = start(sureness)
 
     def vote_of(name: str):
-        found, depth = read(name), read_depth(name)
+        found, depth = read(name), adopted[name]
         believed = trust_aslant(own[name], found.agree, facing_cosine(found.view.camera, depth), trust)
         matched = _match(found, sureness, trust)
         free = trust_free(believed, found.too_far, matched, len(views), sureness, trust)
         return found.view, depth, believed, None, free
 
     fused.add_all(vote_of(name) for name in track(views))
-    return ConfirmedDepth(fused, clip_distance, sureness, views, own, read_depth, threads)
+    return ConfirmedDepth(fused, clip_distance, sureness, views, own, adopted.__getitem__, threads)
 
 
 def _lend(found: KeyframeDepth, trust: TrustRule, adopt: AdoptRule) -> tuple[np.ndarray, np.ndarray, LentDepth]:
