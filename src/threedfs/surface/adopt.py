@@ -147,16 +147,29 @@ def _draw(matrix, cam_from_px, centre, depth, lends, own_depth, bare, within, po
 @njit(cache=True, nogil=True)
 def _cosine_to(cam_from_px, centre, depth, row, column):
     """Return the cosine between a depth map's normal, which faces its own camera, and the ray to another's centre."""
-    across = _point(cam_from_px, depth, row, column + 1) - _point(cam_from_px, depth, row, column - 1)
-    down = _point(cam_from_px, depth, row + 1, column) - _point(cam_from_px, depth, row - 1, column)
+    left, right = _point(cam_from_px, depth, row, column - 1), _point(cam_from_px, depth, row, column + 1)
+    above, below = _point(cam_from_px, depth, row - 1, column), _point(cam_from_px, depth, row + 1, column)
     here = _point(cam_from_px, depth, row, column)
-    normal = np.cross(across, down)
-    if normal @ here > 0:
-        normal = -normal
-    ray = centre - here
-    return normal @ ray / np.sqrt((normal @ normal) * (ray @ ray))
+    across = right[0] - left[0], right[1] - left[1], right[2] - left[2]
+    down = below[0] - above[0], below[1] - above[1], below[2] - above[2]
+    normal = (
+        across[1] * down[2] - across[2] * down[1],
+        across[2] * down[0] - across[0] * down[2],
+        across[0] * down[1] - across[1] * down[0],
+    )
+    ray = centre[0] - here[0], centre[1] - here[1], centre[2] - here[2]
+    cosine = _product(normal, ray) / np.sqrt(_product(normal, normal) * _product(ray, ray))
+    return -cosine if _product(normal, here) > 0 else cosine
 
 
 @njit(cache=True, nogil=True)
 def _point(cam_from_px, depth, row, column):
-    return depth[row, column] * (cam_from_px @ np.array([float(column), float(row), 1.0]))
+    x = cam_from_px[0, 0] * column + cam_from_px[0, 1] * row + cam_from_px[0, 2]
+    y = cam_from_px[1, 0] * column + cam_from_px[1, 1] * row + cam_from_px[1, 2]
+    d = np.float64(depth[row, column])
+    return d * x, d * y, d
+
+
+@njit(cache=True, nogil=True)
+def _product(one, other):
+    return one[0] * other[0] + one[1] * other[1] + one[2] * other[2]
