@@ -8,6 +8,7 @@ from slab import GRID, VIEWS, make_slab, see_depth
 
 from threedfs.object.extract import extract_surface
 from threedfs.surface.adopt import AdoptRule, adopt_depth, lend_depth
+from threedfs.surface.keyframe_depth import KeyframeDepth
 from threedfs.types import Mesh
 
 RULE = AdoptRule(lent_from=6.0, adopted_within=0.015, adopted_reach=0.02, adopted_full=0.4, adopted_from=0.6)
@@ -22,16 +23,22 @@ TOP[45:60, 50:70] = True
 BARE = np.where(TOP, 0.0, 1.0)
 
 
-def lend(depth_of=lambda view: see_depth(SLAB, view), agree=8, confidence=1.0, views=OTHERS):
+def know(view, depth, mask, agree=8, confidence=1.0):
+    """Return a keyframe's depth of which `agree` views say the same, with no match of photographs."""
+    depth = depth.astype(np.float32)
+    counts = np.full(depth.shape, agree, np.uint8)
+    rates = np.full(depth.shape, confidence, np.float32)
+    return KeyframeDepth(view, mask, LENGTH, depth, 0 * rates, counts, 0 * counts, rates)
+
+
+def lend(depth_of=lambda view: see_depth(SLAB, view), views=OTHERS, **said):
     for view in views:
-        depth = depth_of(view).astype(np.float32)
-        counts = np.full(depth.shape, agree, np.uint8)
-        rates = np.full(depth.shape, confidence, np.float32)
-        yield lend_depth(view, depth, counts, rates, np.isfinite(depth), RULE)
+        depth = depth_of(view)
+        yield lend_depth(know(view, depth, np.isfinite(depth), **said), RULE)
 
 
 def adopt(own, lent=None, matched=BARE, mask=MASK, rule=RULE):
-    return adopt_depth(OWN, own, matched, mask, lend() if lent is None else lent, LENGTH, rule)
+    return adopt_depth(know(OWN, own, mask), matched, lend() if lent is None else lent, rule)
 
 
 @pytest.mark.parametrize("shift", [-0.012, 0.004, 0.012])

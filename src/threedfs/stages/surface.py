@@ -33,7 +33,8 @@ from threedfs.segment.gather import pixels_at
 from threedfs.segment.refine import RefineRule
 from threedfs.surface.adopt import AdoptRule
 from threedfs.surface.complete import HullRule
-from threedfs.surface.confirmed import KeyframeDepth, confirm_depth
+from threedfs.surface.confirmed import confirm_depth
+from threedfs.surface.keyframe_depth import KeyframeDepth
 from threedfs.surface.shape import ShapeRule, shape_surface
 from threedfs.surface.trust import TrustRule
 from threedfs.texture.vertices import color_vertices, confirm_vertices, sample_vertices
@@ -63,7 +64,8 @@ def run(
     Not in the paper. Depth maps of the keyframes are fused once more, on a grid around the hull of the masks, by the
     settings `fusion` of fuse_object, but each pixel counts by how well it is confirmed, and the hull of the masks votes
     among them everywhere. So a depth that nothing confirms carves nothing inside of the outline, and a hollow that
-    photographs show is not filled. Then the surface so far outlines the object in more frames, and in the keyframes
+    photographs show is not filled. Where a keyframe's photographs do not match, it takes over what other views have
+    found (`adopt_depth`). Then the surface so far outlines the object in more frames, and in the keyframes
     anew, by what the segmentation has learnt (weights of its settings `segmentation`), and the hull of these masks
     shapes it once more. The masks of the keyframes are cut once more, close around the finished surface.
 

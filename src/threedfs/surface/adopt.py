@@ -10,6 +10,7 @@ from numba import njit
 from scipy.ndimage import gaussian_filter
 
 from threedfs.geometry.transfer import px_from_px, transfer
+from threedfs.surface.keyframe_depth import KeyframeDepth
 from threedfs.surface.trust import rise
 from threedfs.types import View
 
@@ -50,67 +51,42 @@ class LentDepth:
     lends: np.ndarray
 
 
-def lend_depth(
-    view: View, depth: np.ndarray, agree: np.ndarray, confidence: np.ndarray, mask: np.ndarray, rule: AdoptRule
-) -> LentDepth:
-    """Return what a depth map of the object may lend to others: what many views agree on.
+def lend_depth(found: KeyframeDepth, rule: AdoptRule) -> LentDepth:
+    """Return what a keyframe's depth of the object may lend to others: what many views agree on.
 
     Not in the paper.
-
-    Parameters
-    ----------
-    view : View
-    depth : (H, W) float32
-    agree : (H, W) uint8
-    confidence : (H, W) float32
-        Share of agreement, in [0, 1] (`rate_confidence`).
-    mask : (H, W) bool
-        The object.
-    rule : AdoptRule
     """
-    return LentDepth(view, depth, mask & (agree >= rule.lent_from) & (confidence >= _LEAST_CONFIDENCE))
+    agreed = (found.agree >= rule.lent_from) & (found.confidence >= _LEAST_CONFIDENCE)
+    return LentDepth(found.view, found.depth, found.mask & agreed)
 
 
-def adopt_depth(
-    view: View,
-    depth: np.ndarray,
-    matched: np.ndarray,
-    mask: np.ndarray,
-    lent: Iterable[LentDepth],
-    length: float,
-    rule: AdoptRule,
-) -> np.ndarray:
+def adopt_depth(found: KeyframeDepth, matched: np.ndarray, lent: Iterable[LentDepth], rule: AdoptRule) -> np.ndarray:
     """Return a depth map (H, W) float32, moved to what other views have found where few of its own photographs match.
 
     Not in the paper. Nothing but smoothness holds depth where no photograph matches, so that it swings to one side or
     the other, by more than views may differ and agree. What others have found and many agree on is drawn into the view,
     point by point, where it is turned to it and near to the view's own depth, and the mean over some pixels around is
-    adopted. How far the pixel is trusted is not: all who adopt the same error would agree on it.
+    adopted, on the object alone. How far the pixel is trusted is not: all who adopt the same error would agree on it.
 
     Parameters
     ----------
-    view : View
-    depth : (H, W) float32
-        Scene units, NaN where missing.
+    found : KeyframeDepth
     matched : (H, W) float64
         Share of matches around (`share_matched`).
-    mask : (H, W) bool
-        The object, outside of which nothing is adopted.
     lent : iterable of LentDepth
         Of the other views.
-    length : float
-        Of the object in the image, pixels.
     rule : AdoptRule
     """
-    bare = np.where(mask, 1 - rise(matched, rule.adopted_full, rule.adopted_from), 0.0)
+    depth = found.depth
+    bare = np.where(found.mask, 1 - rise(matched, rule.adopted_full, rule.adopted_from), 0.0)
     if not bare.any():
         return depth
     points = np.zeros((2, *depth.shape))  # their number, and the sum of their relative offsets
     for other in lent:
         _draw(
-            px_from_px(view, other.view),
+            px_from_px(found.view, other.view),
             np.linalg.inv(other.view.camera.px_from_cam),
-            other.view.cam_from_world[:3] @ np.append(view.centre, 1.0),
+            other.view.cam_from_world[:3] @ np.append(found.view.centre, 1.0),
             other.depth,
             other.lends,
             depth,
@@ -118,7 +94,7 @@ def adopt_depth(
             rule.adopted_within,
             points,
         )
-    reach = rule.adopted_reach * length
+    reach = rule.adopted_reach * found.length
     number, offset = (gaussian_filter(item, reach) for item in points)
     open_to_it = gaussian_filter((bare > 0).astype(np.float64), reach)
     share = bare * np.minimum(1, number / np.maximum(_ENOUGH * open_to_it, 1e-3))
@@ -146,7 +122,10 @@ def _draw(matrix, cam_from_px, centre, depth, lends, own_depth, bare, within, po
 
 @njit(cache=True, nogil=True)
 def _cosine_to(cam_from_px, centre, depth, row, column):
-    """Return the cosine between a depth map's normal, which faces its own camera, and the ray to another's centre."""
+    """Return the cosine between a depth map's normal, which faces its own camera, and the ray to another's centre.
+
+    As `normals_from_depth` has it, but of the few points that are drawn: maps for all views would fill the memory.
+    """
     left, right = _point(cam_from_px, depth, row, column - 1), _point(cam_from_px, depth, row, column + 1)
     above, below = _point(cam_from_px, depth, row - 1, column), _point(cam_from_px, depth, row + 1, column)
     here = _point(cam_from_px, depth, row, column)

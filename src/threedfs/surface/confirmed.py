@@ -10,39 +10,9 @@ import numpy as np
 from threedfs.fusion.softmax import SoftMaximum, facing_cosine
 from threedfs.read_ahead import map_ahead
 from threedfs.surface.adopt import AdoptRule, LentDepth, adopt_depth, lend_depth
+from threedfs.surface.keyframe_depth import KeyframeDepth
 from threedfs.surface.trust import TrustRule, rate_sureness, share_matched, trust_aslant, trust_depth, trust_free
 from threedfs.types import View
-
-
-@dataclass(frozen=True)
-class KeyframeDepth:
-    """The depth of one keyframe, and what photographs and other views say of it.
-
-    Attributes
-    ----------
-    view : View
-    mask : (H, W) bool
-        The object.
-    length : float
-        Of the object in the image, pixels.
-    depth : (H, W) float32
-        Scene units, NaN where missing.
-    photometric : (H, W) float32
-        Confidence by the keyframe's own photographs (3.2, Eq. 11).
-    agree, too_far : (H, W) uint8
-        See `Agreement`.
-    confidence : (H, W) float32
-        Share of agreement, in [0, 1] (`rate_confidence`).
-    """
-
-    view: View
-    mask: np.ndarray
-    length: float
-    depth: np.ndarray
-    photometric: np.ndarray
-    agree: np.ndarray
-    too_far: np.ndarray
-    confidence: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -116,7 +86,7 @@ def confirm_depth(
         found = read(name)
         others = (held for other, held in lent.items() if other != name)
         matched = _match(found, sureness, trust)
-        depth = adopt_depth(found.view, found.depth, matched, found.mask, others, found.length, adopt)
+        depth = adopt_depth(found, matched, others, adopt)
         return depth, trust_depth(found.agree, found.confidence, matched, trust)
 
     adopted: dict[str, np.ndarray] = {}
@@ -138,7 +108,7 @@ def confirm_depth(
 def _lend(found: KeyframeDepth, trust: TrustRule, adopt: AdoptRule) -> tuple[np.ndarray, np.ndarray, LentDepth]:
     """Return the trust in a depth map as of a bare object, where the object is, and what the map lends."""
     own = trust_depth(found.agree, found.confidence, _match(found, 0.0, trust), trust)
-    return own, found.mask, lend_depth(found.view, found.depth, found.agree, found.confidence, found.mask, adopt)
+    return own, found.mask, lend_depth(found, adopt)
 
 
 def _match(found: KeyframeDepth, sureness: float, trust: TrustRule) -> np.ndarray:
