@@ -232,3 +232,26 @@ def test_without_confidence_every_vote_counts_the_same(table):
 def test_clip_distance_keeps_to_its_limits(share, thickness, expected):
     """Exact: 10 voxels of 0.1, a share of the thickness, two voxels; with share 0 the paper's constant."""
     assert limit_clip_distance(10.0, thickness, share, 0.1) == pytest.approx(expected)
+
+
+@pytest.mark.parametrize("hardness", [0.0, 2.0])
+def test_fields_vote_as_the_surface_of_a_view_does(hardness):
+    """Exact: Eq. 15 with one term more for each field, in voxels that no view sees as well; sums stay as they were."""
+    grid = VoxelGrid(np.array([-0.2, -0.1, 0.9]), 0.02, (21, 11, 11))
+    fused = SoftMaximum(grid, 0.05, hardness, distrust=4.0, discontinuity=0.02)
+    fused.add(FACING, np.full((81, 81), 1.0))
+    before, seen = (array.copy() for array in fused.result())
+    rng = np.random.default_rng(2)
+    fields = rng.uniform(-1, 1, (2, *grid.shape)).astype(np.float32)
+    trust = (0.3, rng.random(grid.shape))
+    votes = [np.exp(hardness * (before - 1.0)) * (seen > 0)]
+    votes += [np.exp(hardness * (field - 1.0) - 4.0 * (1 - own)) for field, own in zip(fields, trust, strict=True)]
+    expected = sum(vote * field for vote, field in zip(votes, (before, *fields), strict=True)) / sum(votes)
+    np.testing.assert_allclose(fused.result_with(list(zip(fields, trust, strict=True))), expected, atol=1e-6)
+    np.testing.assert_array_equal(fused.result()[0], before)
+
+
+def test_a_field_of_another_shape_is_rejected():
+    fused = SoftMaximum(TOP, 0.05, 1.0, distrust=4.0, discontinuity=0.02)
+    with pytest.raises(UserError, match="field"):
+        fused.result_with([(np.zeros((3, 3, 3), np.float32), 1.0)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -21,6 +22,9 @@ UNSEEN = 1.0
 _FREE_RAMP = 3.0
 """Clip distances, from the first in front of a view's surface, over which its vote for free space grows to full
 weight: near the surface, where the view may be wrong, it counts as much as the surface is trusted."""
+
+_LAYERS = 8
+"""Of the grid, to which fields add their votes at one time."""
 
 _NORMAL_SMOOTHING = 2.0
 """Standard deviation, in pixels, of the smoothing of depth before normals are taken."""
@@ -149,17 +153,6 @@ class SoftMaximum(ViewFusion):
         """Add the votes of one view to the sums of Eq. 15."""
         _add_view(self._weighted, self._weight, self._seen, *ballot, self._hidden_from, *self._settings)
 
-    def add_field(self, field: np.ndarray, trust: float | np.ndarray) -> None:
-        """Let a field (nx, ny, nz) in [-1, 1] vote everywhere, as a view's surface does.
-
-        Its trust in [0, 1] is one, or one for each voxel.
-        """
-        check_shape(field, self.grid.shape, "field")
-        vote = np.exp(self._settings[1] * (field.astype(np.float64) - 1) - self._distrust * (1 - trust))
-        self._weighted += vote * field
-        self._weight += vote
-        self._seen += self._seen < 255
-
     def _face(self, camera: Camera, depth: np.ndarray) -> np.ndarray | float:
         """Return the share of its confidence that a pixel keeps for how squarely it is seen, (H, W) float64."""
         return np.clip(facing_cosine(camera, depth) / self._facing, 0.0, 1.0) if self._facing > 0 else 1.0
@@ -184,6 +177,35 @@ class SoftMaximum(ViewFusion):
         sdf = np.full(self.grid.shape, UNSEEN, np.float32)
         np.divide(self._weighted, self._weight, out=sdf, where=self._seen > 0, casting="same_kind")
         return sdf, self._seen
+
+    def result_with(self, votes: Sequence[tuple[np.ndarray, float | np.ndarray]]) -> np.ndarray:
+        """Return the field, (nx, ny, nz) float32, as if fields had voted everywhere, as a view's surface does.
+
+        Changes nothing, and holds a few layers of the grid at a time.
+
+        Parameters
+        ----------
+        votes : sequence of tuple
+            One at least: a field (nx, ny, nz) in [-1, 1] and its trust in [0, 1], one or one for each voxel.
+
+        Raises
+        ------
+        UserError
+            If a field has not the shape of the grid.
+        """
+        for field, _ in votes:
+            check_shape(field, self.grid.shape, "field")
+        sdf = np.empty(self.grid.shape, np.float32)
+        for start in range(0, self.grid.shape[0], _LAYERS):
+            part = slice(start, start + _LAYERS)
+            weighted, weight = self._weighted[part].copy(), self._weight[part].copy()
+            for field, trust in votes:
+                own = trust[part] if isinstance(trust, np.ndarray) else trust
+                vote = np.exp(self._settings[1] * (field[part].astype(np.float64) - 1) - self._distrust * (1 - own))
+                weighted += vote * field[part]
+                weight += vote
+            np.divide(weighted, weight, out=sdf[part], casting="same_kind")
+        return sdf
 
 
 def facing_cosine(camera: Camera, depth: np.ndarray) -> np.ndarray:

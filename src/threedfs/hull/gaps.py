@@ -8,9 +8,9 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 from numba import njit
-from scipy import ndimage
 
 from threedfs.geometry.grid import voxel_places
+from threedfs.geometry.near import find_near
 from threedfs.hull.distance import measure_hull
 from threedfs.read_ahead import map_ahead
 from threedfs.segment.lookup import nearest_pixels
@@ -93,7 +93,8 @@ def find_gaps(
     threads : int
         Changes no result.
     """
-    places = np.flatnonzero(allowed & (hull < 0))
+    asked = allowed & (hull < 0)
+    places = np.flatnonzero(asked)
     centres = voxel_places(grid, places)
     filled = np.zeros(grid.shape, bool)
     if not len(places):
@@ -121,8 +122,7 @@ def find_gaps(
         if found is not None:
             gaps.append(found[0])
             outside[found[1]] += 1
-    apart = ndimage.distance_transform_edt(~solid) if solid.any() else np.full(grid.shape, np.inf)
-    near = apart.reshape(-1)[places] <= _REACH
+    near = find_near(solid, _REACH, asked, threads).reshape(-1)[places]
     filled.reshape(-1)[places] = _fill_gaps(gaps, near, np.maximum(least_views, odds * outside))
     return filled
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter, generate_binary_structure, grey_closing
+from scipy.ndimage import find_objects, gaussian_filter
 
 from threedfs.fusion.softmax import SoftMaximum
 from threedfs.hull.gaps import find_gaps
@@ -14,6 +14,8 @@ from threedfs.types import View
 
 _GAP_BLUR = 1.0
 """Standard deviation, voxels, by which trust in the hull spreads around a gap, so that no edge is left there."""
+_BLUR_ENDS = 4.0
+"""Standard deviations from a gap where that ends."""
 _GAP_PEAK = 1.5
 """What that trust is multiplied by after it was blurred: inside of a gap a few voxels wide it is full again."""
 
@@ -50,7 +52,7 @@ def complete_depth(
     Parameters
     ----------
     fused : SoftMaximum
-        Holds the votes of all views' depth; gets those of the hull.
+        Holds the votes of all views' depth; stays as it is.
     hull, bound, filler : (nx, ny, nz) float32
         The hull that is weighed, the one that nothing leaves but what fills gaps, and the one that fills them
         (`measure_hull`, by more and more masks that may be wrong).
@@ -72,11 +74,25 @@ def complete_depth(
         solid = (field < 0) & above
         return find_gaps(solid, filler, above, masks, views, fused.grid, least_views, rule.gap_odds, threads)
 
-    fused.add_field(hull, (1 - sureness) * rule.hull_trust + sureness * rule.sure_hull_trust)
-    gaps = gaps_of(np.maximum(fused.result()[0], bound))
-    fused.add_field(hull, np.clip(_GAP_PEAK * gaussian_filter(gaps.astype(np.float64), _GAP_BLUR), 0, 1))
-    field = np.maximum(fused.result()[0], bound)
+    votes: list[tuple[np.ndarray, float | np.ndarray]] = [
+        (hull, (1 - sureness) * rule.hull_trust + sureness * rule.sure_hull_trust)
+    ]
+    votes.append((hull, _trust_around(gaps_of(np.maximum(fused.result_with(votes), bound)))))
+    field = np.maximum(fused.result_with(votes), bound)
     return np.where(gaps_of(field), np.minimum(field, filler), field)
+
+
+def _trust_around(gaps: np.ndarray) -> np.ndarray:
+    """Return the trust in the hull in and around gaps (nx, ny, nz) bool, (nx, ny, nz) float64 in [0, 1]."""
+    trust = np.zeros(gaps.shape)
+    if not gaps.any():
+        return trust
+    (box,) = find_objects(gaps.astype(np.uint8))
+    reach = int(_BLUR_ENDS * _GAP_BLUR + 0.5)
+    near = tuple(slice(max(part.start - reach, 0), part.stop + reach) for part in box)
+    blurred = gaussian_filter(gaps[near].astype(np.float64), _GAP_BLUR, truncate=_BLUR_ENDS)
+    np.clip(_GAP_PEAK * blurred, 0, 1, out=trust[near])
+    return trust
 
 
 def close_pits(field: np.ndarray, share: float) -> np.ndarray:
@@ -84,6 +100,17 @@ def close_pits(field: np.ndarray, share: float) -> np.ndarray:
 
     Not in the paper. A grey-scale closing of the solid, by a voxel and the 6 beside it.
     """
-    beside = generate_binary_structure(3, 1)
-    closed = -grey_closing(-field, footprint=beside, mode="nearest")
+    if share <= 0:
+        return field
+    closed = -_least_beside(-_least_beside(field))  # of the field the least, then the largest of these
     return field + np.float32(share) * (closed - field)
+
+
+def _least_beside(field: np.ndarray) -> np.ndarray:
+    """Return the least of each value of a field (nx, ny, nz) and the 6 beside it."""
+    least = field.copy()
+    for axis in range(3):
+        values, found = np.moveaxis(field, axis, 0), np.moveaxis(least, axis, 0)
+        np.minimum(found[1:], values[:-1], out=found[1:])
+        np.minimum(found[:-1], values[1:], out=found[:-1])
+    return least

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from copy import deepcopy
 from dataclasses import dataclass
 
 import numpy as np
@@ -80,12 +79,12 @@ def shape_surface(
     )
     bound = release_bound(bound, height, depth, masks, views, held_share=rule.held_share, held_height=rule.held_height)
     sdf = complete_depth(
-        deepcopy(depth.fused), hull, bound, filler, sureness, height > 0, masks, views, rule.complete, depth.threads
+        depth.fused, hull, bound, filler, sureness, height > 0, masks, views, rule.complete, depth.threads
     )
     sdf = close_pits(sdf, rule.closing * (1 - sureness))
     sdf = fill_unseen(sdf, filler, height > 0, plane.normal, depth, rule.free_share)
     alone = mask_field(sdf, np.ones(grid.shape, bool), height, grid.spacing, rule.medians)
-    alone = close_tunnels(alone, height > 0, rule.tunnel_width)
+    alone = close_tunnels(alone, height > 0, rule.tunnel_width, depth.threads)
     if not (alone < 0).any():
         return None
     smooth = smooth_mesh(extract_surface(alone, grid), rule.smoothing_steps, rule.smoothing_contrast)

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import distance_transform_edt, find_objects, label
+from scipy.ndimage import find_objects, label
 from skimage.measure import euler_number
+
+from threedfs.geometry.near import find_near
 
 _PLUG = np.float32(-0.5)
 """Value of a voxel that closes a tunnel."""
@@ -12,7 +14,7 @@ _CORNERS = 3
 """Voxels of the solid hang together where they touch at a corner."""
 
 
-def close_tunnels(field: np.ndarray, above: np.ndarray, width: float) -> np.ndarray:
+def close_tunnels(field: np.ndarray, above: np.ndarray, width: float, threads: int = 1) -> np.ndarray:
     """Return the field (nx, ny, nz) float32, negative inside, with narrow tunnels closed.
 
     Not in the paper. What a closing of the solid by a ball adds falls into pieces. A piece whose addition raises the
@@ -25,12 +27,13 @@ def close_tunnels(field: np.ndarray, above: np.ndarray, width: float) -> np.ndar
         Voxels that may become solid.
     width : float
         Of the widest tunnel that is closed, voxels.
+    threads : int
+        Changes no result.
     """
     solid = field < 0
     if width <= 0 or not solid.any():
         return field
-    added = _close(solid, width / 2) & ~solid & above
-    pieces, _ = label(added)
+    pieces, _ = label(_closed_by_ball(solid, above & ~solid, width / 2, threads))
     padded, closed = np.pad(solid, 1), field.copy()
     for number, box in enumerate(find_objects(pieces), start=1):
         piece = pieces[box] == number
@@ -42,10 +45,12 @@ def close_tunnels(field: np.ndarray, above: np.ndarray, width: float) -> np.ndar
     return closed
 
 
-def _close(solid: np.ndarray, radius: float) -> np.ndarray:
-    """Return a solid (nx, ny, nz) bool closed by a ball: dilated by its radius in voxels, and eroded by as much."""
+def _closed_by_ball(solid: np.ndarray, among: np.ndarray, radius: float, threads: int) -> np.ndarray:
+    """Return which voxels of `among` (nx, ny, nz) bool a closing of the solid by a ball adds, its radius in voxels."""
     margin = int(np.ceil(radius)) + 1
-    grown = distance_transform_edt(~np.pad(solid, margin)) <= radius
-    closed = distance_transform_edt(grown) > radius
+    padded = np.pad(solid, margin)
+    grown = padded | find_near(padded, radius, ~padded, threads)
+    added = grown & np.pad(among, margin)
+    added &= ~find_near(~grown, radius, added, threads)
     inner = slice(margin, -margin)
-    return closed[inner, inner, inner]
+    return added[inner, inner, inner]
