@@ -64,12 +64,15 @@ class Keyframe:
         The frames it is matched against, best first.
     near, far : float
         Expected depth range, scene units.
+    within : tuple of float, optional
+        Nearest and farthest depth of the object's box, where that is known.
     """
 
     view: View
     neighbours: tuple[View, ...]
     near: float
     far: float
+    within: tuple[float, float] | None = None
 
     @property
     def neighbour_angle(self) -> float:

@@ -6,7 +6,7 @@ import pytest
 from threedfs.crops.depth_range import expect_crop_range
 from threedfs.crops.place import cut_view, find_window, place_crops, shrink_view
 from threedfs.geometry.projection import project
-from threedfs.types import Box, Camera, View
+from threedfs.types import Box, Camera, Keyframe, View
 
 CAMERA = Camera(1280, 960, 1000.0, 1000.0, 640.0, 480.0)
 BOX = Box(np.eye(3), np.array([-0.2, -0.1, -0.1]), np.array([0.2, 0.1, 0.1]))
@@ -81,8 +81,10 @@ def test_the_depth_range_holds_the_box_and_what_is_seen_behind_it():
     view = cut_view(view_from(2.0), find_window(view_from(2.0), BOX.corners(), 0.05), 0.5)
     behind = np.column_stack([np.zeros(100), np.zeros(100), np.linspace(0.0, 1.0, 100)])
     beside = np.column_stack([np.full(100, 3.0), np.zeros(100), np.full(100, 9.0)])
-    near, far = expect_crop_range(view, np.vstack([behind, beside]), BOX.corners(), (0.1, 20.0), 0.95, 1.2)
-    assert near == pytest.approx(0.95 * 1.9)
-    assert far == pytest.approx(1.2 * 2.97, rel=1e-3)  # what lies beside is not in the crop
-    assert expect_crop_range(view, beside, BOX.corners(), (0.1, 20.0), 0.95, 1.2)[1] == pytest.approx(1.2 * 2.1)
-    assert expect_crop_range(view, behind, BOX.corners(), (0.1, 2.6), 0.95, 1.2)[1] == pytest.approx(2.6)
+    found = expect_crop_range(Keyframe(view, (), 0.1, 20.0), np.vstack([behind, beside]), BOX.corners(), 0.95, 1.2)
+    assert found.near == pytest.approx(0.95 * 1.9)
+    assert found.far == pytest.approx(1.2 * 2.97, rel=1e-3)  # what lies beside is not in the crop
+    assert found.within == pytest.approx((1.9, 2.1))
+    assert expect_crop_range(found, beside, BOX.corners(), 0.95, 1.2).far == pytest.approx(1.2 * 2.1)
+    nearer = Keyframe(view, (), 0.1, 2.6)
+    assert expect_crop_range(nearer, behind, BOX.corners(), 0.95, 1.2).far == pytest.approx(2.6)

@@ -29,6 +29,28 @@ def test_power_spacing_is_the_papers():
     assert np.allclose(steps / steps[0], expected / expected[0])
 
 
+@pytest.mark.parametrize("spacing", SPACINGS)
+def test_steps_are_shorter_where_the_object_is(spacing):
+    """By one factor everywhere in the coordinate that is even without it; a factor of 1 changes nothing."""
+    within, count = (1.2, 1.6), 400
+    candidates = space_candidates(0.7, 2.5, count, spacing, within, 4.0)
+    assert candidates[0] == pytest.approx(0.7) and candidates[-1] == pytest.approx(2.5)
+    even = space_candidates(0.7, 2.5, 5000, spacing)
+    steps = np.diff(np.interp(candidates, even, np.arange(5000)))
+    inside = (candidates[:-1] > 1.2) & (candidates[1:] < 1.6)
+    outside = (candidates[1:] < 1.2) | (candidates[:-1] > 1.6)
+    assert np.allclose(steps[inside], steps[inside][0], rtol=0.05)
+    assert np.allclose(steps[outside], 4 * steps[inside][0], rtol=0.05)
+    np.testing.assert_array_equal(
+        space_candidates(0.7, 2.5, 64, spacing, within, 1.0), space_candidates(0.7, 2.5, 64, spacing)
+    )
+
+
+def test_a_box_that_ends_out_of_the_range_is_cut_off():
+    candidates = space_candidates(1.0, 2.0, 33, "inverse", (0.5, 3.0), 4.0)
+    assert np.allclose(candidates, space_candidates(1.0, 2.0, 33, "inverse"))
+
+
 @pytest.mark.parametrize("near, far", [(0.0, 1.0), (2.0, 1.0), (-1.0, 1.0), (np.nan, 1.0)])
 def test_an_empty_range_is_refused(near, far):
     with pytest.raises(UserError, match="expected 0 < near < far"):

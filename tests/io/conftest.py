@@ -72,7 +72,8 @@ class Artifact:
 
 FRAMES = [frames.Frame(f"{i:06d}", i, i / 30, 1.0 + i, RANDOM.integers(0, 256, (6, 8, 3), np.uint8)) for i in range(3)]
 ENTRIES = [
-    Keyframe(view(name, x), (view("000009", 1.0), view("000003", -1.0)), 0.1, 3.0) for name, x in (("b", 0), ("a", 1))
+    Keyframe(view(name, x), (view("000009", 1.0), view("000003", -1.0)), 0.1, 3.0, within)
+    for name, x, within in (("b", 0, (0.5, 1.5)), ("a", 1, None))
 ]
 CONSISTENCY = consistency.ConsistencyMap(
     picture(), np.full((6, 8), np.inf, np.float32), *(RANDOM.integers(0, 9, (6, 8), np.uint8) for _ in range(3))

@@ -9,8 +9,22 @@ from threedfs.errors import UserError
 SPACINGS = ("power", "inverse", "log")
 
 
-def space_candidates(near: float, far: float, count: int, spacing: str) -> np.ndarray:
+_SAMPLES = 4097
+"""Of the range, between which the place of a depth in it is interpolated."""
+
+
+def space_candidates(
+    near: float,
+    far: float,
+    count: int,
+    spacing: str,
+    within: tuple[float, float] | None = None,
+    outside_step: float = 1.0,
+) -> np.ndarray:
     """Space depth candidates over an expected range, ascending.
+
+    Differs from the paper: where it is known what part of the range holds the object (`within`), steps are longer
+    outside of that part.
 
     Parameters
     ----------
@@ -21,6 +35,10 @@ def space_candidates(near: float, far: float, count: int, spacing: str) -> np.nd
     spacing : {"power", "inverse", "log"}
         ``power`` is the paper's ((0.2 + 0.8 i / count)^5 for i = 1 .. count) scaled to the range (Section 4.2);
         ``inverse`` is uniform in inverse depth, that is nearly uniform along epipolar lines; ``log`` is geometric.
+    within : tuple of float, optional
+        Nearest and farthest depth of the object's box, scene units.
+    outside_step : float
+        Length of a step outside of these, over that of one inside of them.
 
     Returns
     -------
@@ -38,11 +56,23 @@ def space_candidates(near: float, far: float, count: int, spacing: str) -> np.nd
     """
     if not 0 < near < far:
         raise UserError(f"depth candidates: expected 0 < near < far, got near = {near:.4g} and far = {far:.4g}.")
+    if spacing not in SPACINGS:
+        raise UserError(f"depth.spacing: expected one of {', '.join(SPACINGS)}, got {spacing}.")
+    even = np.linspace(0, 1, count)
+    if within is None or outside_step == 1:
+        return _place(even, near, far, count, spacing)
+    samples = np.linspace(0, 1, _SAMPLES)
+    first, last = np.interp(np.clip(within, near, far), _place(samples, near, far, count, spacing), samples)
+    knots = np.array([0, first, last, 1])
+    steps = np.cumsum([0, first / outside_step, last - first, (1 - last) / outside_step])
+    return _place(np.interp(even * steps[-1], steps, knots), near, far, count, spacing)
+
+
+def _place(share: np.ndarray, near: float, far: float, count: int, spacing: str) -> np.ndarray:
+    """Return the depths (N,) that lie at shares (N,) in [0, 1] of the way through evenly spaced candidates."""
     if spacing == "power":
-        powers = (0.2 + 0.8 * np.arange(1, count + 1) / count) ** 5
-        return near + (far - near) * (powers - powers[0]) / (powers[-1] - powers[0])
+        powers = (0.2 + 0.8 * (1 + share * (count - 1)) / count) ** 5
+        return near + (far - near) * (powers - (0.2 + 0.8 / count) ** 5) / (1 - (0.2 + 0.8 / count) ** 5)
     if spacing == "inverse":
-        return 1 / np.linspace(1 / near, 1 / far, count)
-    if spacing == "log":
-        return np.geomspace(near, far, count)
-    raise UserError(f"depth.spacing: expected one of {', '.join(SPACINGS)}, got {spacing}.")
+        return 1 / (1 / near + share * (1 / far - 1 / near))
+    return near * (far / near) ** share

@@ -40,6 +40,7 @@ def gather_evidence(
     *,
     candidates: int,
     spacing: str,
+    outside_step: float,
     patch_radius: int,
     variance_floor: float,
     missing_cost: float,
@@ -63,7 +64,7 @@ def gather_evidence(
         See `DepthParams`.
     """
     grey = prepare_grey(read_image(keyframe.view.name), read_valid(keyframe.view.name))
-    depths = space_candidates(keyframe.near, keyframe.far, candidates, spacing)
+    depths = space_candidates(keyframe.near, keyframe.far, candidates, spacing, keyframe.within, outside_step)
     radius = patch_radius or choose_patch_radius(keyframe.neighbour_angle)
     note(f"patches of {2 * radius + 1}x{2 * radius + 1} px")
     cost_volume = compute_cost_volume(

@@ -32,6 +32,7 @@ def write_keyframes(
             "neighbours": [encode_view(view) for view in keyframe.neighbours],
             "near": keyframe.near,
             "far": keyframe.far,
+            "within": keyframe.within,
             "object_pixels": object_pixels,
         }
         for keyframe in keyframes
@@ -86,4 +87,5 @@ def _decode(entry: dict[str, Any]) -> Keyframe:
         neighbours=tuple(decode_view(view) for view in entry["neighbours"]),
         near=entry["near"],
         far=entry["far"],
+        within=tuple(entry["within"]) if entry.get("within") else None,
     )

@@ -26,6 +26,12 @@ class DepthParams:
         equation="Section 4.2",
         choices=("power", "inverse", "log"),
     )
+    outside_step: float = parameter(
+        4.0,
+        "step between candidates before and behind the object's box, over that between those in it, where the box is "
+        "known (paper: 1)",
+        minimum=1.0,
+    )
     patch_radius: int = parameter(
         0,
         "patches are (2 radius + 1)^2 pixels; 0 chooses 1 to 4 by the angle between neighbours (paper: 1)",
@@ -169,6 +175,7 @@ class DepthParams:
 _MATCHING = (
     "candidates",
     "spacing",
+    "outside_step",
     "patch_radius",
     "variance_floor",
     "missing_cost",

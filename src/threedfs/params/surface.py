@@ -48,7 +48,7 @@ class SurfaceParams(SmoothingSettings):
         maximum=1.0,
     )
     bare_matched: float = parameter(
-        0.01,
+        0.02,
         "the same on a bare object, and to say how sure its depth is; the more candidates depth has, the more pixels "
         "match by chance",
         equation="Eq. 11",

@@ -78,12 +78,11 @@ def run(
     moved = []
     xyz = read_points(points).xyz
     for entry in entries.values():
-        view = of_frame[entry.view.name][1]
-        near, far = entry.near, entry.far
-        if corners is not None and find_window(of_frame[entry.view.name][0], corners, params.margin):
-            near, far = expect_crop_range(view, xyz, corners, (near, far), params.near_factor, params.far_factor)
         neighbours = tuple(of_frame[neighbour.name][1] for neighbour in entry.neighbours)
-        moved.append(replace(entry, view=view, neighbours=neighbours, near=near, far=far))
+        seen = replace(entry, view=of_frame[entry.view.name][1], neighbours=neighbours)
+        if corners is not None and find_window(of_frame[entry.view.name][0], corners, params.margin):
+            seen = expect_crop_range(seen, xyz, corners, params.near_factor, params.far_factor)
+        moved.append(seen)
     length = None if corners is None else measure_object(placed, corners)
     write_keyframes(views, moved, job.header, needs_stereo=read_needs_stereo(keyframes), object_pixels=length)
     area = sum(view.camera.width * view.camera.height for view in placed) / len(placed)
