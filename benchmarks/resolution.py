@@ -12,7 +12,7 @@ Takes the results of rendered sequences that are named TAKE_WIDTH and were run o
     sequences:
       dragon_640: {rendered: dragon, settings: {render: {width: 640}}}
 
-Prints the scores of `surface` and the seconds of all jobs but the rendering, on the clock of each.
+Prints the scores of `surface` and the summed wall time of all jobs but the rendering, seconds.
 """
 
 from __future__ import annotations
@@ -56,12 +56,13 @@ def draw_curves(measured: dict[str, dict[int, tuple[dict[str, float], float]]], 
         colour = COLOURS[number % len(COLOURS)]
         scores.plot(widths, [by_width[w][0]["mesh_f_score_0.5"] for w in widths], "o-", color=colour, label=take)
         seconds.plot(widths, [by_width[w][1] for w in widths], "o-", color=colour, label=take)
+    every = sorted({width for by_width in measured.values() for width in by_width})
     scores.set_ylabel("F-score at 0.5 %")
     seconds.set_ylabel("seconds of jobs")
     seconds.set_ylim(bottom=0)
     for axes in (scores, seconds):
         axes.set_xscale("log", base=2)
-        axes.set_xticks([640, 1280, 2560], ["640", "1280", "2560"])
+        axes.set_xticks(every, [str(width) for width in every])
         axes.set_xlabel("width of the video, px")
     scores.legend(fontsize=8, frameon=False)
     with rc_context({"svg.hashsalt": "threedfs"}):

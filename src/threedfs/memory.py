@@ -21,7 +21,7 @@ _BYTES_PER_VOXEL = {
     "locate_object": 30,
     "object": 60,
     "cut_object": 150,
-    "surface": 150,
+    "surface": 110,
     "segment": 140,
     "spectral_matting": 30,
     "volumetric_cut": 120,

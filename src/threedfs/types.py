@@ -65,7 +65,7 @@ class Keyframe:
     near, far : float
         Expected depth range, scene units.
     within : tuple of float, optional
-        Nearest and farthest depth of the object's box, where that is known.
+        Nearest and farthest depth of the object's box, scene units, where that is known.
     """
 
     view: View

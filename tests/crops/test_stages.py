@@ -153,7 +153,7 @@ def test_small_frames_are_undistorted_views(scene):
     store, entries = read_crops(folder / "crops.zarr.zip"), read_keyframes(folder / "views.json")
     views = check_store(store, entries, before)
     assert {view.camera.shape for view in views.values()} == {(120, 160)}
-    assert [(e.near, e.far) for e in entries.values()] == [(e.near, e.far) for e in before.values()]
+    assert [(e.near, e.far, e.within) for e in entries.values()] == [(e.near, e.far, None) for e in before.values()]
     assert read_needs_stereo(folder / "views.json")
     for name in ("a", "b", "c"):
         assert overlap(is_red(store.image(name)), disc_in(views[name])) > 0.85
@@ -179,6 +179,7 @@ def test_crops_show_the_box_and_what_is_filmed_there(scene):
         depths = project(views[name], BOX.corners())[1]
         assert entries[name].near == pytest.approx(0.95 * depths.min())
         assert 1.2 * depths.max() <= entries[name].far <= before[name].far
+        assert entries[name].within == pytest.approx((depths.min(), depths.max()))
 
 
 def test_a_frame_that_does_not_show_the_box_is_whole_and_keeps_its_depth_range(scene):
@@ -187,7 +188,7 @@ def test_a_frame_that_does_not_show_the_box_is_whole_and_keeps_its_depth_range(s
     away = entries["away"]
     assert find_window(VIEWS[3], BOX.corners(), 0.05) is None
     assert away.view.camera.shape == pytest.approx((87, 116), abs=1)
-    assert (away.near, away.far) == (before["away"].near, before["away"].far)
+    assert (away.near, away.far, away.within) == (before["away"].near, before["away"].far, None)
     mean = filmed["away"][0].mean(axis=(0, 1))
     assert store.image("away").mean(axis=(0, 1)) == pytest.approx(mean, abs=12)
 

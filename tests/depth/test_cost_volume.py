@@ -9,6 +9,7 @@ import scenes
 
 from threedfs.depth.candidates import space_candidates
 from threedfs.depth.cost_volume import choose_patch_radius, compute_cost_volume, plane_homography
+from threedfs.depth.evidence import gather_evidence
 from threedfs.depth.zncc import MISSING, accumulate_cost, describe_patches, prepare_grey
 from threedfs.geometry.projection import backproject, project
 from threedfs.geometry.rigid import make_transform
@@ -184,3 +185,32 @@ def test_patches_grow_with_the_gaps_between_views():
         keyframe = Keyframe(reference, (View("turned", scenes.CAMERA, turned),), 1.0, 1.0)
         assert keyframe.neighbour_angle == pytest.approx(degrees)
         assert choose_patch_radius(keyframe.neighbour_angle) == radius
+
+
+def test_candidates_of_the_evidence_are_denser_where_the_box_is():
+    """Contract: what a keyframe knows of its box reaches the candidates; one that knows nothing has even steps."""
+    views = scenes.views()
+    images = {view.name: np.full((*scenes.CAMERA.shape, 3), 128, np.uint8) for view in views}
+
+    def candidates(within, outside_step):
+        found = gather_evidence(
+            Keyframe(views[0], tuple(views[1:2]), 0.5, 3.0, within),
+            images.__getitem__,
+            lambda name: np.ones(scenes.CAMERA.shape, bool),
+            candidates=32,
+            spacing="inverse",
+            outside_step=outside_step,
+            patch_radius=1,
+            variance_floor=1.0,
+            missing_cost=0.5,
+            confidence_falloff=15.0,
+            texture_half_variance=0.0,
+        )
+        return found.candidates
+
+    even = candidates(None, 4.0)
+    np.testing.assert_allclose(1 / even, np.linspace(1 / 0.5, 1 / 3.0, 32))
+    np.testing.assert_array_equal(candidates((1.0, 1.5), 1.0), even)
+    dense = candidates((1.0, 1.5), 4.0)
+    inside = [np.count_nonzero((found >= 1.0) & (found <= 1.5)) for found in (even, dense)]
+    assert inside[1] > 2 * inside[0]

@@ -2,8 +2,9 @@
 
 import numpy as np
 import pytest
+from scipy.ndimage import distance_transform_edt
 
-from threedfs.surface.tunnels import close_tunnels
+from threedfs.surface.tunnels import _closed_by_ball, close_tunnels
 
 PLATE = np.ones((30, 30, 20), np.float32)
 PLATE[3:-3, 3:-3, 6:12] = -1
@@ -55,3 +56,16 @@ def test_of_nothing_and_of_all_nothing_changes(field):
 def test_no_width_is_none():
     pierced = pierce(np.s_[10:12, 10:12, :])
     assert close_tunnels(pierced, ABOVE, 0.0) is pierced
+
+
+@pytest.mark.parametrize("radius", [1.0, 1.5, 2.0, 2.5])
+@pytest.mark.parametrize("threads", [1, 2])
+def test_a_closing_adds_what_distances_say(radius, threads):
+    """Oracle: two distance transforms, with room around for what grows over the border."""
+    rng = np.random.default_rng(4)
+    solid, among = rng.random((14, 17, 9)) < 0.15, rng.random((14, 17, 9)) < 0.8
+    margin = int(np.ceil(radius)) + 1
+    grown = distance_transform_edt(~np.pad(solid, margin)) <= radius
+    closed = (distance_transform_edt(grown) > radius)[margin:-margin, margin:-margin, margin:-margin]
+    added = _closed_by_ball(solid, among & ~solid, radius, threads)
+    np.testing.assert_array_equal(added, closed & among & ~solid)

@@ -16,18 +16,24 @@ _LEAST_NEAR = 0.05
 def expect_crop_range(
     keyframe: Keyframe, points: np.ndarray, corners: np.ndarray, near_factor: float, far_factor: float
 ) -> Keyframe:
-    """Return a keyframe with the depths to search in its crop: the box, and what sparse points show behind it.
+    """Give a keyframe the depths to search in its crop, scene units: the box, and what sparse points show behind it.
 
     Parameters
     ----------
     keyframe : Keyframe
-        A view of its crop, with the range of the whole frame: the far end is at most that, or the box's.
+        Its view is that of the crop; its range is that of the whole frame, which limits the far end unless the box
+        reaches farther.
     points : (P, 3) float64
         Sparse points, world.
     corners : (8, 3) float64
         Of the object's box, world.
     near_factor, far_factor : float
         Near end over the box's nearest depth, far end over the 97th percentile of the points' depths.
+
+    Returns
+    -------
+    Keyframe
+        With the crop's range, and the box's nearest (at least the near end) and farthest depth as `within`.
     """
     view = keyframe.view
     depths = project(view, corners)[1]

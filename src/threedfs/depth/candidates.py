@@ -10,7 +10,7 @@ SPACINGS = ("power", "inverse", "log")
 
 
 _SAMPLES = 4097
-"""Of the range, between which the place of a depth in it is interpolated."""
+"""Depths listed over the range, to find the share of the way at which a given depth lies."""
 
 
 def space_candidates(
@@ -38,7 +38,7 @@ def space_candidates(
     within : tuple of float, optional
         Nearest and farthest depth of the object's box, scene units.
     outside_step : float
-        Length of a step outside of these, over that of one inside of them.
+        Length of a step outside that part over that of a step inside it, as `spacing` measures steps.
 
     Returns
     -------

@@ -24,7 +24,7 @@ _FREE_RAMP = 3.0
 weight: near the surface, where the view may be wrong, it counts as much as the surface is trusted."""
 
 _LAYERS = 8
-"""Of the grid, to which fields add their votes at one time."""
+"""Layers of the grid that `result_with` works on at one time."""
 
 _NORMAL_SMOOTHING = 2.0
 """Standard deviation, in pixels, of the smoothing of depth before normals are taken."""
@@ -186,15 +186,17 @@ class SoftMaximum(ViewFusion):
         Parameters
         ----------
         votes : sequence of tuple
-            One at least: a field (nx, ny, nz) in [-1, 1] and its trust in [0, 1], one or one for each voxel.
+            At least one pair: a field (nx, ny, nz) in [-1, 1], and its trust in [0, 1], a scalar or one per voxel.
 
         Raises
         ------
         UserError
-            If a field has not the shape of the grid.
+            If a field, or its trust, does not have the shape of the grid.
         """
-        for field, _ in votes:
+        for field, trust in votes:
             check_shape(field, self.grid.shape, "field")
+            if isinstance(trust, np.ndarray):
+                check_shape(trust, self.grid.shape, "trust in a field")
         sdf = np.empty(self.grid.shape, np.float32)
         for start in range(0, self.grid.shape[0], _LAYERS):
             part = slice(start, start + _LAYERS)

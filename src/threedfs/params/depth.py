@@ -28,8 +28,8 @@ class DepthParams:
     )
     outside_step: float = parameter(
         4.0,
-        "step between candidates before and behind the object's box, over that between those in it, where the box is "
-        "known (paper: 1)",
+        "how many times longer steps between candidates are in front of and behind the object's box than inside it, "
+        "where the box is known (paper: 1)",
         minimum=1.0,
     )
     patch_radius: int = parameter(

@@ -190,7 +190,11 @@ class SurfaceParams(SmoothingSettings):
         maximum=1.0,
     )
     tunnel_width: float = parameter(
-        4.0, "width up to which tunnels through the object are closed; 0 for none", unit="voxel", minimum=0.0
+        4.0,
+        "width up to which tunnels through the object are closed; 0 for none",
+        unit="voxel",
+        minimum=0.0,
+        maximum=12.0,
     )
     medians: int = parameter(
         3,

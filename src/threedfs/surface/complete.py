@@ -15,7 +15,7 @@ from threedfs.types import View
 _GAP_BLUR = 1.0
 """Standard deviation, voxels, by which trust in the hull spreads around a gap, so that no edge is left there."""
 _BLUR_ENDS = 4.0
-"""Standard deviations from a gap where that ends."""
+"""Radius of that blur, standard deviations."""
 _GAP_PEAK = 1.5
 """What that trust is multiplied by after it was blurred: inside of a gap a few voxels wide it is full again."""
 
@@ -96,13 +96,13 @@ def _trust_around(gaps: np.ndarray) -> np.ndarray:
 
 
 def close_pits(field: np.ndarray, share: float) -> np.ndarray:
-    """Return a field (nx, ny, nz) whose pits and tunnels one or two voxels wide are closed, by a share in [0, 1].
+    """Return a field (nx, ny, nz) float32 whose pits and tunnels up to two voxels wide are closed by a share in [0, 1].
 
     Not in the paper. A grey-scale closing of the solid, by a voxel and the 6 beside it.
     """
     if share <= 0:
         return field
-    closed = -_least_beside(-_least_beside(field))  # of the field the least, then the largest of these
+    closed = -_least_beside(-_least_beside(field))  # the least of each neighbourhood, then the largest of these
     return field + np.float32(share) * (closed - field)
 
 

@@ -46,7 +46,7 @@ def close_tunnels(field: np.ndarray, above: np.ndarray, width: float, threads: i
 
 
 def _closed_by_ball(solid: np.ndarray, among: np.ndarray, radius: float, threads: int) -> np.ndarray:
-    """Return which voxels of `among` (nx, ny, nz) bool a closing of the solid by a ball adds, its radius in voxels."""
+    """Return the voxels of `among` (nx, ny, nz) bool that closing the solid with a ball of a radius in voxels adds."""
     margin = int(np.ceil(radius)) + 1
     padded = np.pad(solid, margin)
     grown = padded | find_near(padded, radius, ~padded, threads)
