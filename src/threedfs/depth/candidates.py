@@ -8,7 +8,6 @@ from threedfs.errors import UserError
 
 SPACINGS = ("power", "inverse", "log")
 
-
 _SAMPLES = 4097
 """Depths listed over the range, to find the share of the way at which a given depth lies."""
 
@@ -71,8 +70,8 @@ def space_candidates(
 def _place(share: np.ndarray, near: float, far: float, count: int, spacing: str) -> np.ndarray:
     """Return the depths (N,) that lie at shares (N,) in [0, 1] of the way through evenly spaced candidates."""
     if spacing == "power":
-        powers = (0.2 + 0.8 * (1 + share * (count - 1)) / count) ** 5
-        return near + (far - near) * (powers - (0.2 + 0.8 / count) ** 5) / (1 - (0.2 + 0.8 / count) ** 5)
+        powers, first = (0.2 + 0.8 * (1 + share * (count - 1)) / count) ** 5, (0.2 + 0.8 / count) ** 5
+        return near + (far - near) * (powers - first) / (1 - first)
     if spacing == "inverse":
         return 1 / (1 / near + share * (1 / far - 1 / near))
     return near * (far / near) ** share
