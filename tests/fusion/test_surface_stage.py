@@ -209,6 +209,7 @@ def test_the_same_bytes_twice(pitted):
         {"agreed_full": 90.0},
         {"aslant_from": 0.0},
         {"aslant_full": 1.0},
+        {"mirrored_height": 0.9},
         {"sure_hull_trust": 0.9},
         {"sure_clip_share": 0.9},
         {"gap_views": 99},

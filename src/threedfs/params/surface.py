@@ -40,6 +40,14 @@ class SurfaceParams(SmoothingSettings):
     aslant_full: float = parameter(
         0.7, "cosine between normal and ray from which such a vote counts fully", minimum=0.0, maximum=1.0
     )
+    mirrored_height: float = parameter(
+        0.02,
+        "height over the support plane up to which depth in the masks counts as the plane's mirror image in an upright "
+        "face, which is the less believed the less sure the object's depth is",
+        unit="height of the object",
+        minimum=0.0,
+        maximum=1.0,
+    )
     matched: float = parameter(
         0.01,
         "photometric confidence from which the photographs of a pixel match, on an object whose depth is sure",

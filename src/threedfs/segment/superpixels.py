@@ -72,12 +72,18 @@ def split_image(
     compactness : float
         Lab units of colour difference that weigh as much as the distance between two superpixels.
     """
-    index = cluster_pixels(image, valid, area=area, compactness=compactness)
-    return Superpixels(index, *_measure_boundaries(index, strength))
+    return join_superpixels(cluster_pixels(image, valid, area=area, compactness=compactness), strength)
 
 
-def _measure_boundaries(index, strength):
-    """Return the pairs of neighbours, how many pixels lie along each boundary, and the sum of their strength."""
+def join_superpixels(index: np.ndarray, strength: np.ndarray) -> Superpixels:
+    """Return superpixels (H, W) int32, -1 where there is none, with their neighbours and what lies between them.
+
+    Parameters
+    ----------
+    index : (H, W) int32
+    strength : (H, W) float32
+        Contour strength in [0, 1].
+    """
     number = np.arange(index.size).reshape(index.shape)
     first, second, pixel = [], [], []
     for ours, theirs in ((np.s_[:, :-1], np.s_[:, 1:]), (np.s_[:-1], np.s_[1:])):
@@ -94,4 +100,4 @@ def _measure_boundaries(index, strength):
     keys, rank = np.unique(once // index.size, return_inverse=True)
     total = np.bincount(rank, strength.reshape(-1)[once % index.size], len(keys))
     pairs = np.stack([keys // count, keys % count], axis=1).astype(np.int32)
-    return pairs, np.bincount(rank, minlength=len(keys)).astype(np.int32), total.astype(np.float32)
+    return Superpixels(index, pairs, np.bincount(rank, minlength=len(keys)).astype(np.int32), total.astype(np.float32))

@@ -35,6 +35,7 @@ from threedfs.surface.adopt import AdoptRule
 from threedfs.surface.complete import HullRule
 from threedfs.surface.confirmed import confirm_depth
 from threedfs.surface.keyframe_depth import KeyframeDepth
+from threedfs.surface.mirrored import find_mirrored
 from threedfs.surface.shape import ShapeRule, shape_surface
 from threedfs.surface.trust import TrustRule
 from threedfs.texture.vertices import color_vertices, confirm_vertices, sample_vertices
@@ -103,6 +104,7 @@ def run(
             said.agree,
             said.too_far,
             said.confidence,
+            find_mirrored(views[name], cut.masks[name], found.depth, place, params.mirrored_height),
         )
 
     def start(sureness):

@@ -11,7 +11,15 @@ from threedfs.fusion.softmax import SoftMaximum, facing_cosine
 from threedfs.read_ahead import map_ahead
 from threedfs.surface.adopt import AdoptRule, LentDepth, adopt_depth, lend_depth
 from threedfs.surface.keyframe_depth import KeyframeDepth
-from threedfs.surface.trust import TrustRule, rate_sureness, share_matched, trust_aslant, trust_depth, trust_free
+from threedfs.surface.mirrored import believe_mirrored
+from threedfs.surface.trust import (
+    TrustRule,
+    rate_sureness,
+    share_matched,
+    trust_aslant,
+    trust_depth,
+    trust_free,
+)
 from threedfs.types import View
 
 
@@ -87,7 +95,8 @@ def confirm_depth(
         others = (held for other, held in lent.items() if other != name)
         matched = _match(found, sureness, trust)
         depth = adopt_depth(found, matched, others, adopt)
-        return depth, trust_depth(found.agree, found.confidence, matched, trust)
+        trusted = trust_depth(found.agree, found.confidence, matched, trust)
+        return depth, trusted * believe_mirrored(found.mirrored, sureness)
 
     adopted: dict[str, np.ndarray] = {}
     for name, (depth, trusted) in zip(views, map_ahead(adopt_of, views, threads=threads), strict=True):
@@ -99,7 +108,7 @@ def confirm_depth(
         believed = trust_aslant(own[name], found.agree, facing_cosine(found.view.camera, depth), trust)
         matched = _match(found, sureness, trust)
         free = trust_free(believed, found.too_far, matched, len(views), sureness, trust)
-        return found.view, depth, believed, None, free
+        return found.view, depth, believed, None, free * believe_mirrored(found.mirrored, sureness)
 
     fused.add_all(vote_of(name) for name in track(views))
     return ConfirmedDepth(fused, clip_distance, sureness, views, own, adopted.__getitem__, threads)

@@ -1,0 +1,159 @@
+"""Cuts of the images by colour with one thing exact at a time, to see what stands between them and true masks.
+
+    python benchmarks/exact_cuts.py results/NAME [results/NAME ...] [--change KEY=VALUE ...]
+
+Takes a finished run of a rendered take with `keyframes_at_truth: true`, gc_2d and gc_2d3d_pixel. Cuts its
+images again, alone (2D GC of Section 4.3) and jointly with the voxels, with the run's own settings: as it is; with
+superpixels split where they straddle the true outline; with colours learnt in every round from true masks; with both.
+Prints the mean IoU over the keyframes, in crops, beside the best that the superpixels allow. With changes to settings
+of `segment`, each alone, it prints the IoU with these instead.
+"""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+from collections.abc import Mapping
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+from unittest.mock import patch
+
+import numpy as np
+import yaml
+
+from threedfs.evaluate.rendering import filmed_pixels, sample_nearest
+from threedfs.io.arrays import read_arrays
+from threedfs.io.crops import read_crops
+from threedfs.io.depth_maps import read_edges
+from threedfs.io.frames import read_frames
+from threedfs.io.images import read_mask
+from threedfs.io.keyframes import read_keyframes
+from threedfs.io.poses import read_poses
+from threedfs.io.segmentation import SEGMENTATION, read_segmentation
+from threedfs.io.superpixels import read_superpixels, write_superpixels
+from threedfs.job import Job
+from threedfs.params.schema import make_params
+from threedfs.params.segment import SegmentParams
+from threedfs.progress import Progress
+from threedfs.segment import joint
+from threedfs.segment.energy import BACKGROUND, OBJECT
+from threedfs.segment.superpixels import Superpixels, join_superpixels
+from threedfs.stages import segment
+
+_FIELDS = {"fused": "07_fusion/object.zarr.zip", "deformed": "09_deform/volume.zarr.zip"}
+
+
+def read_true_masks(folder: Path) -> dict[str, np.ndarray]:
+    """Return the true masks (H, W) bool of all keyframes, in their crops."""
+    frames, solved = read_frames(folder / "01_frames/frames.zarr.zip"), read_poses(folder / "02_poses/poses.json")
+    whole = {view.name: view.camera for view in solved.views}
+    masks = {}
+    for name, keyframe in read_keyframes(folder / "04_crops/keyframes.json").items():
+        pixels = filmed_pixels(keyframe.view.camera, whole[name], solved.distortion, frames.source_shape)
+        masks[name] = sample_nearest(read_mask(folder / f"00_render/masks/{name}.png"), pixels, False)
+    return masks
+
+
+def split_at(superpixels: Superpixels, mask: np.ndarray, strength: np.ndarray) -> Superpixels:
+    """Return superpixels of which none straddles the outline of a mask (H, W)."""
+    index = np.where(superpixels.index >= 0, 2 * superpixels.index + mask, -1)
+    kept, rank = np.unique(index, return_inverse=True)
+    return join_superpixels((rank.reshape(index.shape) - (kept[0] < 0)).astype(np.int32), strength)
+
+
+def cut_images(
+    folder: Path,
+    cut: str,
+    superpixels: Path,
+    truth: Mapping[str, np.ndarray] | None = None,
+    changes: Mapping[str, Any] = MappingProxyType({}),
+) -> dict[str, np.ndarray]:
+    """Run the stage on superpixels of a folder, with colours of true masks if there are any; return its masks."""
+    params = read_arrays(folder / f"10_segment/{cut}.zarr.zip", SEGMENTATION)[1]["parameters"] | changes
+    learn = joint._learn_colors
+
+    def learn_from_truth(images, labels, *others):
+        exact = {name: images[name].superpixels.share(truth[name]) > 0.5 for name in labels}
+        return learn(images, {name: np.where(own, OBJECT, BACKGROUND) for name, own in exact.items()}, *others)
+
+    field = params["field"]
+    with (
+        tempfile.TemporaryDirectory() as scratch,
+        patch.object(joint, "_learn_colors", learn_from_truth if truth else learn),
+    ):
+        segment.run(
+            field=folder / _FIELDS[field],
+            located=folder / f"07_fusion/located/{field}_sdf.zarr.zip",
+            support=folder / "03_scene/support.json",
+            keyframes=folder / "04_crops/keyframes.json",
+            crops=folder / "04_crops/crops.zarr.zip",
+            superpixels=sorted(superpixels.glob("*.zarr.zip")),
+            semidense=sorted((folder / "04_semidense").glob("*.zarr.zip")),
+            depth=sorted((folder / "06_depth").glob("*.zarr.zip")),
+            consistency=folder / "07_fusion/consistency.zarr.zip",
+            labels=Path(scratch) / "labels.zarr.zip",
+            appearance=Path(scratch) / "appearance.zarr.zip",
+            cut=cut,
+            params=make_params(SegmentParams, params),
+            job=Job(Progress(cut), {}, 1, 0),
+        )
+        return read_segmentation(Path(scratch) / "labels.zarr.zip").masks
+
+
+def mean_iou(masks: Mapping[str, np.ndarray], truth: Mapping[str, np.ndarray]) -> float:
+    """Return the mean IoU over all keyframes."""
+    return float(np.mean([(masks[name] & own).sum() / (masks[name] | own).sum() for name, own in truth.items()]))
+
+
+def measure_changes(folder: Path, changes: list[str]) -> dict[str, float]:
+    """Return the IoU of both cuts as they are, and with each change alone."""
+    valid, truth = read_crops(folder / "04_crops/crops.zarr.zip").valid_of, read_true_masks(folder)
+    truth = {name: own & valid(name) for name, own in truth.items()}
+    found = {}
+    for change in ["", *changes]:
+        key, _, value = change.partition("=")
+        settings = {key: yaml.safe_load(value)} if change else {}
+        for cut in ("images", "joint"):
+            masks = cut_images(folder, cut, folder / "10_segment/superpixels", None, settings)
+            found[f"{cut} {change}".strip()] = mean_iou(masks, truth)
+    return found
+
+
+def measure(folder: Path) -> dict[str, float]:
+    """Return the IoU of both cuts with nothing, superpixels, colours, and both exact."""
+    truth, crops = read_true_masks(folder), read_crops(folder / "04_crops/crops.zarr.zip")
+    truth = {name: own & crops.valid_of(name) for name, own in truth.items()}
+    given = folder / "10_segment/superpixels"
+    found, best = {}, {}
+    with tempfile.TemporaryDirectory() as scratch:
+        for name, own in truth.items():
+            superpixels = read_superpixels(given / f"{name}.zarr.zip")
+            best[name] = superpixels.paint(superpixels.share(own) > 0.5)
+            exact = split_at(superpixels, own, read_edges(folder / f"05_edges/{name}.zarr.zip"))
+            write_superpixels(Path(scratch) / f"{name}.zarr.zip", exact, {})
+        found["best labels"] = mean_iou(best, truth)
+        for cut in ("images", "joint"):
+            for what, where, known in (
+                ("", given, None),
+                (", superpixels", Path(scratch), None),
+                (", colours", given, truth),
+                (", both", Path(scratch), truth),
+            ):
+                found[cut + what] = mean_iou(cut_images(folder, cut, where, known), truth)
+    return found
+
+
+def main() -> None:
+    """Print a line for each folder named on the command line."""
+    parser = argparse.ArgumentParser(description="Cut images by colour with one thing exact at a time.")
+    parser.add_argument("folders", nargs="+", type=Path)
+    parser.add_argument("--change", nargs="+", default=[], metavar="KEY=VALUE")
+    given = parser.parse_args()
+    for folder in given.folders:
+        found = measure_changes(folder, given.change) if given.change else measure(folder)
+        print(folder.name, {what: round(value, 3) for what, value in found.items()}, flush=True)
+
+
+if __name__ == "__main__":
+    main()

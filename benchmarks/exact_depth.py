@@ -1,0 +1,61 @@
+"""Put true depth in the place of the depth maps of a rendered take, to see what the stages after it make of that.
+
+    snakemake --cores 2 --configfile CONFIG -- results/NAME/06_depth/KEYFRAME.zarr.zip ...    # or a whole run
+    python benchmarks/exact_depth.py results/NAME [results/NAME ...]
+    snakemake --cores 2 --configfile CONFIG --rerun-triggers mtime -- results/NAME/12_evaluate/METHOD/metrics.csv ...
+
+Keyframes must have a true depth image (`keyframes_at_truth: true`). Where the renderer saw nothing, there is no depth.
+Cameras stay as estimated: true depth is divided by their scale.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from threedfs.evaluate.rendering import filmed_pixels, sample_nearest
+from threedfs.evaluate.true_cameras import relate_cameras
+from threedfs.io.arrays import read_arrays
+from threedfs.io.crops import read_crops
+from threedfs.io.depth_maps import DEPTH_MAP, DepthMap, write_depth_map
+from threedfs.io.frames import read_frames
+from threedfs.io.given_cameras import read_given_cameras
+from threedfs.io.keyframes import read_keyframes
+from threedfs.io.poses import read_poses
+from threedfs.io.truth import read_true_depth
+from threedfs.io.truth_files import find_depth_images
+from threedfs.params.rendered import DEPTH_SCALE
+
+
+def replace_depth(folder: Path) -> int:
+    """Write true depth into the depth maps of the run in `folder`; return how many there are."""
+    frames, solved = read_frames(folder / "01_frames/frames.zarr.zip"), read_poses(folder / "02_poses/poses.json")
+    crops = read_crops(folder / "04_crops/crops.zarr.zip")
+    keyframes = read_keyframes(folder / "04_crops/keyframes.json")
+    true_cameras = relate_cameras(read_given_cameras(folder / "00_render/cameras.json", None), solved.views, frames)
+    whole = {view.name: view.camera for view in solved.views}
+    images = find_depth_images(folder / "00_render/depth", keyframes)
+    for name, keyframe in keyframes.items():
+        image = read_true_depth(images[name], DEPTH_SCALE, frames.source_shape, None, None)
+        pixels = filmed_pixels(keyframe.view.camera, whole[name], solved.distortion, frames.source_shape)
+        truth = np.where(crops.valid_of(name), sample_nearest(image, pixels, np.nan), np.nan)
+        known = np.isfinite(truth).astype(np.float32)
+        path = folder / f"06_depth/{name}.zarr.zip"
+        header = read_arrays(path, DEPTH_MAP)[1]
+        depth = (truth / true_cameras.from_scene.scale).astype(np.float32)
+        write_depth_map(path, DepthMap(depth, 0.5 * (1 - known), known), header)
+    return len(keyframes)
+
+
+def main() -> None:
+    """Replace the depth maps of the folders named on the command line."""
+    parser = argparse.ArgumentParser(description="Put true depth in the place of the depth maps of rendered takes.")
+    parser.add_argument("folders", nargs="+", type=Path)
+    for folder in parser.parse_args().folders:
+        print(f"{folder}: {replace_depth(folder)} depth maps", flush=True)
+
+
+if __name__ == "__main__":
+    main()
