@@ -41,7 +41,7 @@ class SurfaceParams(SmoothingSettings):
         0.7, "cosine between normal and ray from which such a vote counts fully", minimum=0.0, maximum=1.0
     )
     mirrored_height: float = parameter(
-        0.02,
+        0.05,
         "height over the support plane up to which depth in the masks counts as the plane's mirror image in an upright "
         "face, which is the less believed the less sure the object's depth is",
         unit="height of the object",
