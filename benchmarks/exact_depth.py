@@ -27,6 +27,7 @@ from threedfs.io.poses import read_poses
 from threedfs.io.truth import read_true_depth
 from threedfs.io.truth_files import find_depth_images
 from threedfs.params.rendered import DEPTH_SCALE
+from threedfs.store.made import Made
 
 
 def replace_depth(folder: Path) -> int:
@@ -46,6 +47,8 @@ def replace_depth(folder: Path) -> int:
         header = read_arrays(path, DEPTH_MAP)[1]
         depth = (truth / true_cameras.from_scene.scale).astype(np.float32)
         write_depth_map(path, DepthMap(depth, 0.5 * (1 - known), known), header)
+        Made(folder.parent / ".made").forget(path)  # else the job's own map would be put back
+    (folder / "06_depth/.snakemake_timestamp").touch()  # by which Snakemake knows that a folder is new
     return len(keyframes)
 
 
