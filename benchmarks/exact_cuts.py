@@ -21,15 +21,14 @@ from unittest.mock import patch
 
 import numpy as np
 import yaml
+from exact_depth import find_filmed_pixels
 
-from threedfs.evaluate.rendering import filmed_pixels, sample_nearest
+from threedfs.evaluate.masks import intersection_over_union
+from threedfs.evaluate.rendering import sample_nearest
 from threedfs.io.arrays import read_arrays
 from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_edges
-from threedfs.io.frames import read_frames
 from threedfs.io.images import read_mask
-from threedfs.io.keyframes import read_keyframes
-from threedfs.io.poses import read_poses
 from threedfs.io.segmentation import SEGMENTATION, read_segmentation
 from threedfs.io.superpixels import read_superpixels, write_superpixels
 from threedfs.job import Job
@@ -46,13 +45,11 @@ _FIELDS = {"fused": "07_fusion/object.zarr.zip", "deformed": "09_deform/volume.z
 
 def read_true_masks(folder: Path) -> dict[str, np.ndarray]:
     """Return the true masks (H, W) bool of all keyframes, in their crops."""
-    frames, solved = read_frames(folder / "01_frames/frames.zarr.zip"), read_poses(folder / "02_poses/poses.json")
-    whole = {view.name: view.camera for view in solved.views}
-    masks = {}
-    for name, keyframe in read_keyframes(folder / "04_crops/keyframes.json").items():
-        pixels = filmed_pixels(keyframe.view.camera, whole[name], solved.distortion, frames.source_shape)
-        masks[name] = sample_nearest(read_mask(folder / f"00_render/masks/{name}.png"), pixels, False)
-    return masks
+    valid = read_crops(folder / "04_crops/crops.zarr.zip").valid_of
+    return {
+        name: sample_nearest(read_mask(folder / f"00_render/masks/{name}.png"), pixels, False) & valid(name)
+        for name, pixels in find_filmed_pixels(folder).items()
+    }
 
 
 def split_at(superpixels: Superpixels, mask: np.ndarray, strength: np.ndarray) -> Superpixels:
@@ -62,14 +59,14 @@ def split_at(superpixels: Superpixels, mask: np.ndarray, strength: np.ndarray) -
     return join_superpixels((rank.reshape(index.shape) - (kept[0] < 0)).astype(np.int32), strength)
 
 
-def cut_images(
+def cut_anew(
     folder: Path,
     cut: str,
     superpixels: Path,
     truth: Mapping[str, np.ndarray] | None = None,
     changes: Mapping[str, Any] = MappingProxyType({}),
 ) -> dict[str, np.ndarray]:
-    """Run the stage on superpixels of a folder, with colours of true masks if there are any; return its masks."""
+    """Cut anew, with superpixels of a folder, colours of true masks if any, and changed settings; return the masks."""
     params = read_arrays(folder / f"10_segment/{cut}.zarr.zip", SEGMENTATION)[1]["parameters"] | changes
     learn = joint._learn_colors
 
@@ -103,27 +100,24 @@ def cut_images(
 
 def mean_iou(masks: Mapping[str, np.ndarray], truth: Mapping[str, np.ndarray]) -> float:
     """Return the mean IoU over all keyframes."""
-    return float(np.mean([(masks[name] & own).sum() / (masks[name] | own).sum() for name, own in truth.items()]))
+    return float(np.mean([intersection_over_union(masks[name], own) for name, own in truth.items()]))
 
 
 def measure_changes(folder: Path, changes: list[str]) -> dict[str, float]:
     """Return the IoU of both cuts as they are, and with each change alone."""
-    valid, truth = read_crops(folder / "04_crops/crops.zarr.zip").valid_of, read_true_masks(folder)
-    truth = {name: own & valid(name) for name, own in truth.items()}
-    found = {}
+    truth, found = read_true_masks(folder), {}
     for change in ["", *changes]:
         key, _, value = change.partition("=")
         settings = {key: yaml.safe_load(value)} if change else {}
         for cut in ("images", "joint"):
-            masks = cut_images(folder, cut, folder / "10_segment/superpixels", None, settings)
+            masks = cut_anew(folder, cut, folder / "10_segment/superpixels", None, settings)
             found[f"{cut} {change}".strip()] = mean_iou(masks, truth)
     return found
 
 
 def measure(folder: Path) -> dict[str, float]:
     """Return the IoU of both cuts with nothing, superpixels, colours, and both exact."""
-    truth, crops = read_true_masks(folder), read_crops(folder / "04_crops/crops.zarr.zip")
-    truth = {name: own & crops.valid_of(name) for name, own in truth.items()}
+    truth = read_true_masks(folder)
     given = folder / "10_segment/superpixels"
     found, best = {}, {}
     with tempfile.TemporaryDirectory() as scratch:
@@ -140,7 +134,7 @@ def measure(folder: Path) -> dict[str, float]:
                 (", colours", given, truth),
                 (", both", Path(scratch), truth),
             ):
-                found[cut + what] = mean_iou(cut_images(folder, cut, where, known), truth)
+                found[cut + what] = mean_iou(cut_anew(folder, cut, where, known), truth)
     return found
 
 
@@ -150,6 +144,9 @@ def main() -> None:
     parser.add_argument("folders", nargs="+", type=Path)
     parser.add_argument("--change", nargs="+", default=[], metavar="KEY=VALUE")
     given = parser.parse_args()
+    for change in given.change:
+        if change.partition("=")[0] not in vars(SegmentParams()) or "=" not in change:
+            parser.error(f"--change: expected a parameter of segment and its value, KEY=VALUE, got {change}")
     for folder in given.folders:
         found = measure_changes(folder, given.change) if given.change else measure(folder)
         print(folder.name, {what: round(value, 3) for what, value in found.items()}, flush=True)

@@ -1,11 +1,11 @@
 """Put true depth in the place of the depth maps of a rendered take, to see what the stages after it make of that.
 
-    snakemake --cores 2 --configfile CONFIG -- results/NAME/06_depth/KEYFRAME.zarr.zip ...    # or a whole run
+    snakemake --cores 2 --configfile CONFIG -- results/NAME/06_depth    # or a whole run
     python benchmarks/exact_depth.py results/NAME [results/NAME ...]
     snakemake --cores 2 --configfile CONFIG --rerun-triggers mtime -- results/NAME/12_evaluate/METHOD/metrics.csv ...
 
 Keyframes must have a true depth image (`keyframes_at_truth: true`). Where the renderer saw nothing, there is no depth.
-Cameras stay as estimated: true depth is divided by their scale.
+Cameras stay as estimated: true depth is divided by their scale. So do the plane and the box, from the scene pass.
 """
 
 from __future__ import annotations
@@ -30,17 +30,28 @@ from threedfs.params.rendered import DEPTH_SCALE
 from threedfs.store.made import Made
 
 
+def find_filmed_pixels(folder: Path) -> dict[str, np.ndarray]:
+    """Return where each pixel of the keyframes' crops lies in the source's frames, (H, W, 2) float64 each."""
+    frames, solved = read_frames(folder / "01_frames/frames.zarr.zip"), read_poses(folder / "02_poses/poses.json")
+    whole = {view.name: view.camera for view in solved.views}
+    return {
+        name: filmed_pixels(keyframe.view.camera, whole[name], solved.distortion, frames.source_shape)
+        for name, keyframe in read_keyframes(folder / "04_crops/keyframes.json").items()
+    }
+
+
 def replace_depth(folder: Path) -> int:
     """Write true depth into the depth maps of the run in `folder`; return how many there are."""
     frames, solved = read_frames(folder / "01_frames/frames.zarr.zip"), read_poses(folder / "02_poses/poses.json")
     crops = read_crops(folder / "04_crops/crops.zarr.zip")
-    keyframes = read_keyframes(folder / "04_crops/keyframes.json")
     true_cameras = relate_cameras(read_given_cameras(folder / "00_render/cameras.json", None), solved.views, frames)
-    whole = {view.name: view.camera for view in solved.views}
-    images = find_depth_images(folder / "00_render/depth", keyframes)
-    for name, keyframe in keyframes.items():
+    places = find_filmed_pixels(folder)
+    images = find_depth_images(folder / "00_render/depth", places)
+    lacking = sorted(set(places) - set(images))
+    if lacking:
+        raise SystemExit(f"{folder}: expected true depth of all keyframes, found none of {', '.join(lacking)}.")
+    for name, pixels in places.items():
         image = read_true_depth(images[name], DEPTH_SCALE, frames.source_shape, None, None)
-        pixels = filmed_pixels(keyframe.view.camera, whole[name], solved.distortion, frames.source_shape)
         truth = np.where(crops.valid_of(name), sample_nearest(image, pixels, np.nan), np.nan)
         known = np.isfinite(truth).astype(np.float32)
         path = folder / f"06_depth/{name}.zarr.zip"
@@ -49,7 +60,7 @@ def replace_depth(folder: Path) -> int:
         write_depth_map(path, DepthMap(depth, 0.5 * (1 - known), known), header)
         Made(folder.parent / ".made").forget(path)  # else the job's own map would be put back
     (folder / "06_depth/.snakemake_timestamp").touch()  # by which Snakemake knows that a folder is new
-    return len(keyframes)
+    return len(places)
 
 
 def main() -> None:

@@ -41,9 +41,9 @@ class SurfaceParams(SmoothingSettings):
         0.7, "cosine between normal and ray from which such a vote counts fully", minimum=0.0, maximum=1.0
     )
     mirrored_height: float = parameter(
-        0.05,
-        "height over the support plane up to which depth in the masks counts as the plane's mirror image in an upright "
-        "face, which is the less believed the less sure the object's depth is",
+        0.07,
+        "height over the support plane up to which depth in the masks is taken for the plane's mirror image in an "
+        "upright face, and believed as far as the object's depth is sure; with 0 what lies under the plane is",
         unit="height of the object",
         minimum=0.0,
         maximum=1.0,

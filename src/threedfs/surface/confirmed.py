@@ -12,14 +12,7 @@ from threedfs.read_ahead import map_ahead
 from threedfs.surface.adopt import AdoptRule, LentDepth, adopt_depth, lend_depth
 from threedfs.surface.keyframe_depth import KeyframeDepth
 from threedfs.surface.mirrored import believe_mirrored
-from threedfs.surface.trust import (
-    TrustRule,
-    rate_sureness,
-    share_matched,
-    trust_aslant,
-    trust_depth,
-    trust_free,
-)
+from threedfs.surface.trust import TrustRule, rate_sureness, share_matched, trust_aslant, trust_depth, trust_free
 from threedfs.types import View
 
 
@@ -37,7 +30,7 @@ class ConfirmedDepth:
         Of the object's depth, in [0, 1] (`rate_sureness`).
     views : mapping of str to View
     trust : mapping of str to (H, W) float32
-        In [0, 1] (`trust_depth`).
+        In [0, 1] (`trust_depth`, `believe_mirrored`).
     read : callable
         Gives the depth map (H, W) of a view by its name, NaN where it has none.
     threads : int
@@ -95,23 +88,25 @@ def confirm_depth(
         others = (held for other, held in lent.items() if other != name)
         matched = _match(found, sureness, trust)
         depth = adopt_depth(found, matched, others, adopt)
-        trusted = trust_depth(found.agree, found.confidence, matched, trust)
-        return depth, trusted * believe_mirrored(found.mirrored, sureness)
+        return depth, trust_depth(found.agree, found.confidence, matched, trust)
 
     adopted: dict[str, np.ndarray] = {}
     for name, (depth, trusted) in zip(views, map_ahead(adopt_of, views, threads=threads), strict=True):
         adopted[name], own[name] = depth, trusted
     fused, clip_distance = start(sureness)
+    final: dict[str, np.ndarray] = {}
 
     def vote_of(name: str):
         found, depth = read(name), adopted[name]
         believed = trust_aslant(own[name], found.agree, facing_cosine(found.view.camera, depth), trust)
         matched = _match(found, sureness, trust)
         free = trust_free(believed, found.too_far, matched, len(views), sureness, trust)
-        return found.view, depth, believed, None, free * believe_mirrored(found.mirrored, sureness)
+        share = believe_mirrored(found.mirrored, sureness)
+        final[name] = own[name] * share
+        return found.view, depth, believed * share, None, free * share
 
     fused.add_all(vote_of(name) for name in track(views))
-    return ConfirmedDepth(fused, clip_distance, sureness, views, own, adopted.__getitem__, threads)
+    return ConfirmedDepth(fused, clip_distance, sureness, views, final, adopted.__getitem__, threads)
 
 
 def _lend(found: KeyframeDepth, trust: TrustRule, adopt: AdoptRule) -> tuple[np.ndarray, np.ndarray, LentDepth]:

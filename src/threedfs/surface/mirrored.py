@@ -9,10 +9,10 @@ from threedfs.types import Support, View
 
 
 def find_mirrored(view: View, mask: np.ndarray, depth: np.ndarray, support: Support, share: float) -> np.ndarray:
-    """Find where a mask shows the object, but its depth lies in the support plane or under it, (H, W) bool.
+    """Return where a mask shows the object, but its depth lies in the support plane or under it, (H, W) bool.
 
-    Not in the paper. An upright mirror shows the plane before it behind itself, in the same plane, and one that lies
-    shows what is above it underneath. All views find it there and photographs match, so the face would be carved away.
+    Not in the paper. An upright mirror shows the plane in front of it as if it went on behind, and one that lies shows
+    what is above it underneath. All views find it there and photographs match, so the face would be carved away.
 
     Parameters
     ----------
@@ -22,11 +22,12 @@ def find_mirrored(view: View, mask: np.ndarray, depth: np.ndarray, support: Supp
     depth : (H, W) float32
         Scene units, NaN where missing.
     support : Support
+        Its box has a margin, as much below the plane as above the object.
     share : float
-        Of the object's height over the plane, up to which depth counts as in it.
+        Of the object's height over the plane, up to which depth counts as in the plane.
     """
-    height = support.plane.distance(backproject_map(view, depth))
-    return mask & (height < share * (support.box.high - support.box.low)[2])
+    tall = support.box.high[2] + support.box.low[2] + 2 * support.plane.offset
+    return mask & (support.plane.distance(backproject_map(view, depth)) < share * tall)
 
 
 def believe_mirrored(mirrored: np.ndarray, sureness: float) -> np.ndarray:
