@@ -1,5 +1,7 @@
 """An upright mirror shows the support plane in itself: such depth carves no hole into a bare object."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from slab import CAMERA, GRID, VIEWS, make_slab, see_depth
@@ -14,36 +16,70 @@ from threedfs.surface.keyframe_depth import KeyframeDepth
 from threedfs.surface.mirrored import believe_mirrored, find_mirrored
 from threedfs.types import Box, Plane, Support
 
-SUPPORT = Support(
-    Plane(np.array([0.0, 0, 1]), 0.0), Box(np.eye(3), np.array([-0.5, -0.5, 0]), np.array([0.5, 0.5, 0.4])), {}
+TALL = 0.4
+SUPPORT = Support(  # a box with a margin of 0.1
+    Plane(np.array([0.0, 0, 1]), 0.0),
+    Box(np.eye(3), np.array([-0.5, -0.5, -0.1]), np.array([0.5, 0.5, TALL + 0.1])),
+    {},
 )
 SLAB = extract_surface(make_slab(), GRID)
+MIRRORS = next(iter(VIEWS.values()))
+"""Looks at the side at x > 0."""
 
 
-def see_mirror(view):
-    """Return a slab's depth, mask, and where its side at x > 0 shows the plane z = 0 in its place."""
+def see_mirror(view, level=0.0):
+    """Return a slab's depth, mask, and where its side at x > 0 shows a plane at a level in its place."""
     depth = see_depth(SLAB, view)
     mask = np.isfinite(depth)
     points = backproject_map(view, depth)
-    side = mask & (points[..., 0] > 0.38) & (points[..., 2] < 0.3)
+    side = mask & (points[..., 0] > 0.38) & (points[..., 2] < 0.3) & (points[..., 2] > 0.1 * TALL)
     rays = backproject_map(view, np.ones(CAMERA.shape)) - view.centre  # of camera depth 1
-    return np.where(side, -view.centre[2] / rays[..., 2], depth).astype(np.float32), mask, side
+    return np.where(side, (level - view.centre[2]) / rays[..., 2], depth).astype(np.float32), mask, side
 
 
-@pytest.mark.parametrize("share", [0.0, 0.02])
-def test_depth_in_the_plane_is_found_and_no_other(share):
-    for view in VIEWS.values():
-        depth, mask, side = see_mirror(view)
-        found = find_mirrored(view, mask, depth - np.float32(1e-4), SUPPORT, share + 1e-3)
-        height = SUPPORT.plane.distance(backproject_map(view, depth))
-        assert found[side].all() and (height[found] < 0.4 * (share + 1e-3)).all()
+def know(view, share=0.05, level=0.0, agree=8):
+    """Return what is known of a keyframe that sees the mirror; as many views say the same."""
+    depth, mask, _ = see_mirror(view, level)
+    counts, rates = np.full(CAMERA.shape, agree, np.uint8), np.ones(CAMERA.shape, np.float32)
+    mirrored = find_mirrored(view, mask, depth, SUPPORT, share)
+    return KeyframeDepth(view, mask, 50.0, depth, 0 * rates, counts, 0 * counts, rates, mirrored)
 
 
-def test_what_lies_outside_of_the_mask_or_has_no_depth_is_none():
-    view = next(iter(VIEWS.values()))
-    depth, mask, side = see_mirror(view)
-    assert not find_mirrored(view, mask & ~side, np.where(side, depth, np.nan), SUPPORT, 0.02)[side].any()
-    assert not find_mirrored(view, mask, np.full_like(depth, np.nan), SUPPORT, 0.02).any()
+@pytest.mark.parametrize(("level", "share"), [(-0.3, 0.0), (-0.001, 0.0), (0.019, 0.05), (0.03, 0.08)])
+def test_depth_in_the_plane_or_under_it_is_found(level, share):
+    _, mask, side = see_mirror(MIRRORS)
+    found = know(MIRRORS, share, level).mirrored
+    assert side.any() and found[side].all()
+    assert not (found & ~mask).any()
+
+
+@pytest.mark.parametrize(("level", "share"), [(0.001, 0.0), (0.021, 0.05), (0.034, 0.08)])
+def test_depth_above_it_is_not(level, share):
+    """Exact: shares are of the object's height, whatever the margin of its box."""
+    _, _, side = see_mirror(MIRRORS)
+    assert not know(MIRRORS, share, level).mirrored[side].any()
+
+
+def test_a_plane_that_is_neither_level_nor_at_the_origin_is_the_same(rigid=0.7):
+    """Property: everything turned and moved alike."""
+    turn = np.array([[np.cos(rigid), 0, np.sin(rigid)], [0, 1, 0], [-np.sin(rigid), 0, np.cos(rigid)]])
+    shift = np.array([0.3, -0.2, 0.9])
+    away = np.eye(4)
+    away[:3, :3], away[:3, 3] = turn, shift
+    moved = replace(MIRRORS, cam_from_world=MIRRORS.cam_from_world @ np.linalg.inv(away))
+    axes = SUPPORT.box.axes @ turn.T
+    box = Box(axes, SUPPORT.box.low + axes @ shift, SUPPORT.box.high + axes @ shift)
+    support = Support(Plane(axes[2], -axes[2] @ shift), box, {})
+    depth, mask, _ = see_mirror(MIRRORS, 0.01)
+    assert find_mirrored(moved, mask, depth, support, 0.05).any()
+    np.testing.assert_array_equal(
+        find_mirrored(moved, mask, depth, support, 0.05), find_mirrored(MIRRORS, mask, depth, SUPPORT, 0.05)
+    )
+
+
+def test_no_depth_is_no_mirror_image():
+    nothing = np.full(CAMERA.shape, np.nan, np.float32)
+    assert not find_mirrored(MIRRORS, np.ones(CAMERA.shape, bool), nothing, SUPPORT, 0.05).any()
 
 
 @pytest.mark.parametrize(("sureness", "trust"), [(0.0, 0.0), (0.4, 0.4), (1.0, 1.0)])
@@ -53,26 +89,34 @@ def test_it_is_believed_as_far_as_the_depth_of_the_object_is_sure(sureness, trus
     assert believed.dtype == np.float32
 
 
-def fuse(share):
-    """Return the field, (nx, ny, nz) float32, of all views of the mirror, who agree on what they see, and the hull."""
+BARE = replace(TRUST, sure_from=2.0, sure_full=3.0)
 
-    def read(name):
-        view = VIEWS[name]
-        depth, mask, _ = see_mirror(view)
-        agree, rates = np.full(CAMERA.shape, 8, np.uint8), np.ones(CAMERA.shape, np.float32)
-        mirrored = find_mirrored(view, mask, depth, SUPPORT, share)
-        return KeyframeDepth(view, mask, 50.0, depth, 0 * rates, agree, 0 * agree, rates, mirrored)
 
-    def start(sureness):
-        assert sureness == 0
+def confirm(share, agree=8, rule=BARE):
+    """Return the depth that all views of the mirror have, and what it is worth."""
+
+    def start(_):
         return SoftMaximum(GRID, 4 * GRID.spacing, 10.0, distrust=40.0, discontinuity=0.1), 4 * GRID.spacing
 
-    bare = TRUST.__class__(**{**vars(TRUST), "sure_from": 2.0, "sure_full": 3.0})
-    return confirm_depth(VIEWS, read, start, bare, ADOPT).fused.result_with([(make_slab(), 0.5)])
+    return confirm_depth(VIEWS, lambda name: know(VIEWS[name], share, 0.005, agree), start, rule, ADOPT)
+
+
+@pytest.mark.parametrize(("rule", "trust"), [((2.0, 3.0), 0.0), ((0.5, 1.5), 0.5), ((0.0, 0.5), 1.0)])
+def test_trust_in_it_falls_once_however_many_agree(rule, trust):
+    """Exact: the mean trust is 1, so that the object is sure by what is left of the way to `sure_full`."""
+    found = confirm(0.05, 9, replace(TRUST, sure_from=rule[0], sure_full=rule[1]))
+    mirrored = know(MIRRORS, 0.05, 0.005).mirrored
+    assert found.sureness == pytest.approx(trust)
+    np.testing.assert_allclose(found.trust[MIRRORS.name][mirrored], trust, atol=1e-6)
+
+
+def fuse(share):
+    """Return the field, (nx, ny, nz) float32, that all views of the mirror make with the hull of the masks."""
+    return confirm(share).fused.result_with([(make_slab(), 0.5)])
 
 
 def test_a_mirror_carves_a_bare_object_only_where_its_image_is_believed():
     """With the hull of the masks, which is the slab, as trusted as half a view."""
     behind = np.s_[33:35, 16:25, 6:9]  # two voxels behind the face at x = 0.4
-    assert (fuse(-1.0)[behind] > 0.5).mean() > 0.25
+    assert (fuse(0.0)[behind] > 0.5).mean() > 0.15
     assert (fuse(0.05)[behind] < -0.5).all()
