@@ -28,7 +28,7 @@ def know(view, depth, mask, agree=8, confidence=1.0):
     depth = depth.astype(np.float32)
     counts = np.full(depth.shape, agree, np.uint8)
     rates = np.full(depth.shape, confidence, np.float32)
-    return KeyframeDepth(view, mask, LENGTH, depth, 0 * rates, counts, 0 * counts, rates, False & mask)
+    return KeyframeDepth(view, mask, LENGTH, depth, 0 * rates, counts, 0 * counts, rates)
 
 
 def lend(depth_of=lambda view: see_depth(SLAB, view), views=OTHERS, **said):

@@ -22,6 +22,7 @@ RULE = TrustRule(
     agreed_full=9.0,
     aslant_from=0.3,
     aslant_full=0.7,
+    mirrored_height=0.05,
 )
 SHAPE = (40, 60)
 INSIDE = np.ones(SHAPE, bool)

@@ -43,7 +43,7 @@ class SurfaceParams(SmoothingSettings):
     mirrored_height: float = parameter(
         0.07,
         "height over the support plane up to which depth in the masks is taken for the plane's mirror image in an "
-        "upright face, and believed as far as the object's depth is sure; with 0 what lies under the plane is",
+        "upright face, and believed as far as the object's depth is sure; at 0 only what lies under the plane is",
         unit="height of the object",
         minimum=0.0,
         maximum=1.0,

@@ -76,11 +76,12 @@ def split_image(
 
 
 def join_superpixels(index: np.ndarray, strength: np.ndarray) -> Superpixels:
-    """Return superpixels (H, W) int32, -1 where there is none, with their neighbours and what lies between them.
+    """Return superpixels with their neighbours and what lies between them.
 
     Parameters
     ----------
     index : (H, W) int32
+        Superpixel of each pixel, -1 where there is none.
     strength : (H, W) float32
         Contour strength in [0, 1].
     """

@@ -35,7 +35,6 @@ from threedfs.surface.adopt import AdoptRule
 from threedfs.surface.complete import HullRule
 from threedfs.surface.confirmed import confirm_depth
 from threedfs.surface.keyframe_depth import KeyframeDepth
-from threedfs.surface.mirrored import find_mirrored
 from threedfs.surface.shape import ShapeRule, shape_surface
 from threedfs.surface.trust import TrustRule
 from threedfs.texture.vertices import color_vertices, confirm_vertices, sample_vertices
@@ -104,7 +103,6 @@ def run(
             said.agree,
             said.too_far,
             said.confidence,
-            find_mirrored(views[name], cut.masks[name], found.depth, place, params.mirrored_height),
         )
 
     def start(sureness):
@@ -123,6 +121,7 @@ def run(
         views,
         read,
         start,
+        place,
         make_rule(TrustRule, params),
         make_rule(AdoptRule, params),
         track=lambda names: job.progress.track(names, "keyframe"),

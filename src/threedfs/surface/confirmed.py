@@ -11,9 +11,9 @@ from threedfs.fusion.softmax import SoftMaximum, facing_cosine
 from threedfs.read_ahead import map_ahead
 from threedfs.surface.adopt import AdoptRule, LentDepth, adopt_depth, lend_depth
 from threedfs.surface.keyframe_depth import KeyframeDepth
-from threedfs.surface.mirrored import believe_mirrored
+from threedfs.surface.mirrored import believe_mirrored, find_mirrored
 from threedfs.surface.trust import TrustRule, rate_sureness, share_matched, trust_aslant, trust_depth, trust_free
-from threedfs.types import View
+from threedfs.types import Support, View
 
 
 @dataclass(frozen=True)
@@ -50,6 +50,7 @@ def confirm_depth(
     views: Mapping[str, View],
     read: Callable[[str], KeyframeDepth],
     start: Callable[[float], tuple[SoftMaximum, float]],
+    support: Support,
     trust: TrustRule,
     adopt: AdoptRule,
     *,
@@ -69,6 +70,8 @@ def confirm_depth(
     start : callable
         Gives votes to add to, still empty, and their clip distance in scene units, by the sureness of the object's
         depth.
+    support : Support
+        Where the object stands.
     trust : TrustRule
     adopt : AdoptRule
     track : callable
@@ -101,7 +104,8 @@ def confirm_depth(
         believed = trust_aslant(own[name], found.agree, facing_cosine(found.view.camera, depth), trust)
         matched = _match(found, sureness, trust)
         free = trust_free(believed, found.too_far, matched, len(views), sureness, trust)
-        share = believe_mirrored(found.mirrored, sureness)
+        mirrored = find_mirrored(found.view, found.mask, found.depth, support, trust.mirrored_height)
+        share = believe_mirrored(mirrored, sureness)
         final[name] = own[name] * share
         return found.view, depth, believed * share, None, free * share
 

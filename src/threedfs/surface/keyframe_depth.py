@@ -28,8 +28,6 @@ class KeyframeDepth:
         See `Agreement`.
     confidence : (H, W) float32
         Share of agreement, in [0, 1] (`rate_confidence`).
-    mirrored : (H, W) bool
-        Where the mask shows the object, but its depth lies in the support plane (`find_mirrored`).
     """
 
     view: View
@@ -40,4 +38,3 @@ class KeyframeDepth:
     agree: np.ndarray
     too_far: np.ndarray
     confidence: np.ndarray
-    mirrored: np.ndarray

@@ -32,6 +32,7 @@ class TrustRule:
     agreed_full: float
     aslant_from: float
     aslant_full: float
+    mirrored_height: float
 
 
 def share_matched(
