@@ -6,7 +6,7 @@ from painted_ball import ball, everywhere, ring
 
 from threedfs.geometry.projection import project
 from threedfs.texture.charts import cut_charts, pack
-from threedfs.texture.choose import ChoiceRule, adjacent_faces, choose_views
+from threedfs.texture.choose import adjacent_faces, choose_views, measure_areas
 from threedfs.texture.vertices import GRAZING, sample_vertices
 
 MARGIN = 2
@@ -17,8 +17,8 @@ def cut(photos):
     """A ball, its views, the view of each face, and the charts."""
     mesh, views = ball(4), ring(8)
     samples = sample_vertices(mesh, views, photos.__getitem__, everywhere, GRAZING)
-    chosen = choose_views(mesh, views, samples, ChoiceRule(15.0, 0.5))
-    return mesh, views, chosen, cut_charts(mesh, views, chosen)
+    chosen = choose_views(mesh, measure_areas(mesh, views, samples), 0.5)
+    return mesh, views, chosen, cut_charts(mesh, views, chosen, 1.0)
 
 
 def count_covers(place, size, shape):
@@ -64,15 +64,17 @@ def test_a_chart_is_a_connected_piece_of_one_view(cut):
     assert set(atlas.view) == {-1, *range(8)}
 
 
-def test_a_texel_is_a_pixel(cut):
-    """Exact: a painted chart is a piece of its photograph, moved by whole pixels; its start says which."""
-    mesh, views, chosen, atlas = cut
+@pytest.mark.parametrize("texels", [1.0, 1.5])
+def test_a_chart_has_the_shape_that_its_view_shows(cut, texels):
+    """Exact: as many texels for each pixel as are asked for, moved by whole texels."""
+    mesh, views, chosen, _ = cut
+    atlas = cut_charts(mesh, views, chosen, texels)
     for rank, view in enumerate(views):
         own = chosen == rank
-        pixels = project(view, mesh.vertices[mesh.faces[own]])[0]
-        charts = atlas.chart[own]
-        moved = atlas.corners[own] - (atlas.place - atlas.start)[charts][:, None]
-        np.testing.assert_allclose(moved, pixels, atol=1e-9)
+        moved = atlas.corners[own] - texels * project(view, mesh.vertices[mesh.faces[own]])[0]
+        for chart in np.unique(atlas.chart[own]):
+            apart = moved[atlas.chart[own] == chart].reshape(-1, 2)
+            np.testing.assert_allclose(apart, np.rint(apart[:1]).repeat(len(apart), axis=0), atol=1e-9)
 
 
 def test_what_no_view_shows_is_laid_out_without_loss_of_shape(cut):
@@ -93,6 +95,6 @@ def test_what_no_view_shows_is_laid_out_without_loss_of_shape(cut):
 def test_a_mesh_that_no_view_shows_still_has_a_chart():
     """Property: of some size, all of it blank."""
     mesh = ball(2)
-    atlas = cut_charts(mesh, ring(3), np.full(len(mesh.faces), -1))
+    atlas = cut_charts(mesh, ring(3), np.full(len(mesh.faces), -1), 1.0)
     assert atlas.view.tolist() == [-1] and min(atlas.shape) > 10
     assert np.isfinite(atlas.corners).all()

@@ -139,8 +139,8 @@ TEXTURE_CHANGES = [
     {"tolerance": 0.01},
     {"views": 4},
     {"held_out_step": 5},
-    {"color_scale": 1e4},
     {"seam_cost": 0.0},
+    {"texels": 1.0},
 ]
 
 

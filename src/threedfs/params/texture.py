@@ -27,12 +27,15 @@ class TextureParams:
         "many none; 0 for none",
         minimum=0,
     )
-    color_scale: float = parameter(
-        15.0,
-        "difference of a photograph from the median of all that costs as much as showing a face with no area",
-        unit="grey level",
-        exclusive_minimum=0.0,
-    )
     seam_cost: float = parameter(
-        0.5, "cost of a seam along a mean edge, in costs of showing a mean face with no area", minimum=0.0
+        0.5,
+        "cost of a cut between two pieces of the texture along a mean edge, in costs of a mean face that a piece shows "
+        "with no area",
+        minimum=0.0,
+    )
+    texels: float = parameter(
+        1.5,
+        "texels along a row for each pixel of the photograph that shows a face large",
+        exclusive_minimum=0.0,
+        maximum=4.0,
     )

@@ -15,9 +15,8 @@ from threedfs.job import Job
 from threedfs.object.stand import stand_up, turn_y_up
 from threedfs.params.rules import make_rule
 from threedfs.params.texture import TextureParams
-from threedfs.texture.choose import ChoiceRule
 from threedfs.texture.held_out import hold_out, spread_views
-from threedfs.texture.paint import paint_mesh
+from threedfs.texture.paint import PaintRule, paint_mesh
 from threedfs.texture.simplify import simplify_mesh
 from threedfs.texture.textured import TexturedMesh
 
@@ -58,7 +57,7 @@ def run(
             f"{crops}: expected photographs to paint the mesh from, found {len(names)}, of which {len(held)} are held "
             "out; raise texture.held_out_step, or set it to 0."
         )
-    painting = paint_mesh(simple, painters, images.image, images.valid_of, make_rule(ChoiceRule, params))
+    painting = paint_mesh(simple, painters, images.image, images.valid_of, make_rule(PaintRule, params))
     painted = painting.textured
     write_textured_obj(textured / "mesh.obj", painted)
     upright = turn_y_up(stand_up(painted.mesh, read_support(support).plane))

@@ -1,4 +1,4 @@
-"""Charts: pieces of a mesh that one photograph paints, and where each lies in the texture."""
+"""Charts: pieces of a mesh, each in the shape that one photograph shows, and where each lies in the texture."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from threedfs.types import Mesh, View
 _MARGIN = 2
 """Texels around a chart, so that no picture bleeds into its neighbour's where a viewer interpolates."""
 _BLANK = 0.5
-"""Resolution of a chart that no photograph paints, against the others': it has no detail."""
+"""Resolution of a chart that no photograph shows, against the others': it has no detail."""
 
 
 @dataclass(frozen=True)
@@ -32,9 +32,7 @@ class Atlas:
     chart : (F,) int64
         Chart of each face.
     view : (C,) int64
-        Rank of the view that paints each chart, -1 for none.
-    start : (C, 2) int64
-        Pixel (u, v) of its view that a chart's first texel shows.
+        Rank of the view that gives each chart its shape, -1 for none.
     place, size : (C, 2) int64
         First texel of the chart, (column, row), and its columns and rows.
     corners : (F, 3, 2) float64
@@ -44,17 +42,15 @@ class Atlas:
     shape: tuple[int, int]
     chart: np.ndarray
     view: np.ndarray
-    start: np.ndarray
     place: np.ndarray
     size: np.ndarray
     corners: np.ndarray
 
 
-def cut_charts(mesh: Mesh, views: Sequence[View], chosen: np.ndarray) -> Atlas:
+def cut_charts(mesh: Mesh, views: Sequence[View], chosen: np.ndarray, texels: float) -> Atlas:
     """Cut the mesh where the photograph changes, and give each piece the shape that its photograph shows it in.
 
-    So a texel is a pixel, and nothing is resampled or stretched. A piece that no photograph paints is laid flat along
-    its mean normal.
+    So nothing is stretched. A piece that no photograph shows is laid flat along its mean normal.
 
     Parameters
     ----------
@@ -62,6 +58,8 @@ def cut_charts(mesh: Mesh, views: Sequence[View], chosen: np.ndarray) -> Atlas:
     views : sequence of View
     chosen : (F,) int64
         As `choose_views` returns it.
+    texels : float
+        To a pixel of the photograph, along a row.
     """
     pairs, _ = adjacent_faces(mesh)
     pairs = pairs[chosen[pairs[:, 0]] == chosen[pairs[:, 1]]]
@@ -72,7 +70,7 @@ def cut_charts(mesh: Mesh, views: Sequence[View], chosen: np.ndarray) -> Atlas:
     corners = np.empty((len(mesh.faces), 3, 2))
     for rank in np.unique(chosen[chosen >= 0]):
         own = chosen == rank
-        corners[own] = project(views[rank], mesh.vertices)[0][mesh.faces[own]]
+        corners[own] = texels * project(views[rank], mesh.vertices)[0][mesh.faces[own]]
     _lay_flat(mesh, chart, view, corners)
     low, high = np.full((count, 2), np.inf), np.full((count, 2), -np.inf)
     np.minimum.at(low, chart, corners.min(axis=1))
@@ -80,7 +78,7 @@ def cut_charts(mesh: Mesh, views: Sequence[View], chosen: np.ndarray) -> Atlas:
     start = np.floor(low).astype(np.int64) - _MARGIN
     size = np.ceil(high).astype(np.int64) + _MARGIN + 1 - start
     place, shape = pack(size)
-    return Atlas(shape, chart, view, start, place, size, corners + (place - start)[chart][:, None])
+    return Atlas(shape, chart, view, place, size, corners + (place - start)[chart][:, None])
 
 
 def pack(size: np.ndarray) -> tuple[np.ndarray, tuple[int, int]]:
@@ -97,7 +95,7 @@ def pack(size: np.ndarray) -> tuple[np.ndarray, tuple[int, int]]:
 
 
 def _lay_flat(mesh: Mesh, chart: np.ndarray, view: np.ndarray, corners: np.ndarray) -> None:
-    """Write where the corners of faces that no photograph paints lie, at a resolution that fits the others'."""
+    """Write where the corners of faces that no photograph shows lie, at a resolution that fits the others'."""
     blank = np.flatnonzero(view[chart] < 0)
     if not len(blank):
         return

@@ -1,4 +1,4 @@
-"""A mesh painted from photographs: exposure, choice of a photograph for each face, charts, seams, texture."""
+"""A mesh painted from photographs: their exposure, charts in the shape that one shows, the blend of all."""
 
 from __future__ import annotations
 
@@ -10,12 +10,27 @@ import numpy as np
 from threedfs.geometry.faces import face_areas
 from threedfs.texture.bake import bake_texture
 from threedfs.texture.charts import cut_charts
-from threedfs.texture.choose import ChoiceRule, choose_views
-from threedfs.texture.exposure import apply_gains, expose, find_gains
-from threedfs.texture.level import level_seams
+from threedfs.texture.choose import choose_views, measure_areas
+from threedfs.texture.exposure import expose, find_gains
 from threedfs.texture.textured import TexturedMesh
 from threedfs.texture.vertices import GRAZING, Reader, sample_vertices
 from threedfs.types import Mesh, View
+
+
+@dataclass(frozen=True)
+class PaintRule:
+    """How the texture is laid out.
+
+    Attributes
+    ----------
+    seam_cost : float
+        As `choose_views` takes it.
+    texels : float
+        As `cut_charts` takes them. More than 1, as all photographs together show more than one does.
+    """
+
+    seam_cost: float
+    texels: float
 
 
 @dataclass(frozen=True)
@@ -36,8 +51,8 @@ class Painting:
     charts: int
 
 
-def paint_mesh(mesh: Mesh, views: Sequence[View], read_image: Reader, read_valid: Reader, rule: ChoiceRule) -> Painting:
-    """Paint a mesh, each face from the one photograph that shows it best.
+def paint_mesh(mesh: Mesh, views: Sequence[View], read_image: Reader, read_valid: Reader, rule: PaintRule) -> Painting:
+    """Paint a mesh, each point with the median of the photographs that show it.
 
     Not in the paper.
 
@@ -49,7 +64,7 @@ def paint_mesh(mesh: Mesh, views: Sequence[View], read_image: Reader, read_valid
         At most 254.
     read_image, read_valid : callable
         Give the image (H, W, 3) uint8 RGB of a view by its name, and which pixels (H, W) bool show the scene.
-    rule : ChoiceRule
+    rule : PaintRule
     """
     samples = sample_vertices(mesh, views, read_image, read_valid, GRAZING)
     gains = find_gains(samples)
@@ -58,12 +73,12 @@ def paint_mesh(mesh: Mesh, views: Sequence[View], read_image: Reader, read_valid
     def read_exposed(name: str) -> np.ndarray:
         return expose(read_image(name), gain_of[name])
 
-    chosen = choose_views(mesh, views, apply_gains(samples, gains), rule)
-    atlas = cut_charts(mesh, views, chosen)
-    added = level_seams(mesh, views, chosen, read_exposed)
-    areas = face_areas(mesh)
+    areas = measure_areas(mesh, views, samples)
+    chosen = choose_views(mesh, areas, rule.seam_cost)
+    atlas = cut_charts(mesh, views, chosen, rule.texels)
+    whole = face_areas(mesh)
     return Painting(
-        bake_texture(mesh, views, atlas, added, read_exposed),
-        float(areas[chosen < 0].sum() / areas.sum()),
+        bake_texture(mesh, views, atlas, areas, read_exposed),
+        float(whole[chosen < 0].sum() / whole.sum()),
         len(atlas.view),
     )
