@@ -1,5 +1,8 @@
 """Contract tests of the stages from depth maps to the object, on a sphere that floats just above a table."""
 
+import io
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import trimesh
@@ -7,7 +10,7 @@ import trimesh
 from threedfs.errors import UserError
 from threedfs.geometry.projection import backproject_map
 from threedfs.geometry.similarity import Similarity
-from threedfs.io.consistency import read_consistency
+from threedfs.io.consistency import read_consistency, write_consistency
 from threedfs.io.crops import Crop, write_crops
 from threedfs.io.depth_maps import DepthMap, Semidense, write_depth_map, write_edges, write_semidense
 from threedfs.io.frames import Frame, write_frames
@@ -96,7 +99,7 @@ def run_all(folder, threads=1, point_deviation=0.05):
         depth=depth,
         consistency=agreement,
         support=folder / "support.json",
-        scene=None,
+        scene=folder / "scene.zarr.zip",
         volume=folder / "object.zarr.zip",
         params=FuseObjectParams(longest_side=60),
         job=job,
@@ -162,6 +165,37 @@ def test_one_grid_for_scene_and_object(results, tmp_path):
     assert own.grid.shape == scene.grid.shape and own.grid.spacing == scene.grid.spacing
     assert np.array_equal(own.grid.origin, scene.grid.origin) and np.array_equal(own.grid.axes, scene.grid.axes)
     assert np.array_equal(own.seen, scene.seen)
+
+
+@pytest.mark.parametrize("change", [{"mirrored_height": 0.0}, {"mirrored_from": 0.2}, {"mirrored_full": 0.9}], ids=str)
+def test_parameters_of_doubt_act(results, tmp_path, change):
+    """Contract: the sphere's lower part counts as mirrored, and its depth as half sure."""
+    store = read_consistency(results / "consistency.zarr.zip")
+    unsure = (
+        (name, replace(found, confidence=0.8 * found.confidence))
+        for name in store.names
+        for found in [store.read(name)]
+    )
+    write_consistency(tmp_path / "consistency.zarr.zip", unsure, HEADER)
+
+    def fuse(**settings):
+        log = io.StringIO()
+        base = {"longest_side": 60, "mirrored_height": 0.3, "mirrored_from": 0.6, "mirrored_full": 1.0}
+        fuse_object.run(
+            keyframes=results / "keyframes.json",
+            depth=sorted((results / "depth").iterdir()),
+            consistency=tmp_path / "consistency.zarr.zip",
+            support=results / "support.json",
+            scene=results / "scene.zarr.zip",
+            volume=tmp_path / "object.zarr.zip",
+            params=FuseObjectParams(**(base | settings)),
+            job=Job(Progress("test", log), HEADER, 1),
+        )
+        return read_volume(tmp_path / "object.zarr.zip").sdf, log.getvalue()
+
+    plain, said = fuse()
+    assert "depth is unsure: mirror images of the support plane count 0." in said
+    assert not np.array_equal(plain, fuse(**change)[0])
 
 
 def test_mesh_is_the_sphere_closed(results, table):

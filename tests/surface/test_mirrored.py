@@ -10,10 +10,10 @@ from test_trust import RULE as TRUST
 
 from threedfs.fusion.softmax import SoftMaximum
 from threedfs.geometry.projection import backproject_map
+from threedfs.locate.mirrored import believe_mirrored, find_mirrored
 from threedfs.object.extract import extract_surface
 from threedfs.surface.confirmed import confirm_depth
 from threedfs.surface.keyframe_depth import KeyframeDepth
-from threedfs.surface.mirrored import believe_mirrored, find_mirrored
 from threedfs.types import Box, Plane, Support
 
 TALL = 0.4

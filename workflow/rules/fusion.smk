@@ -34,7 +34,7 @@ rule fuse_object:
         depth="results/{sequence}/06_depth",
         consistency="results/{sequence}/07_fusion/consistency.zarr.zip",
         support="results/{sequence}/03_scene/support.json",
-        scene=scene_to_cover,
+        scene="results/{sequence}/03_scene/volume.zarr.zip",
     output:
         volume="results/{sequence}/07_fusion/object.zarr.zip",
     log:

@@ -145,12 +145,6 @@ def if_wide(pattern):
     return lambda wildcards: pattern if is_wide(wildcards) else []
 
 
-def scene_to_cover(wildcards):
-    """Return the scene's volume where the object is fused on its grid, else nothing."""
-    of_region = settings_of("fuse_object")(wildcards)["grid"] == "region"
-    return f"results/{wildcards.sequence}/03_scene/volume.zarr.zip" if of_region else []
-
-
 def box_of_scope(wildcards):
     """Return where the object is, or nothing in the scene pass, which looks for it."""
     return [] if wildcards.scope else "results/{sequence}/03_scene/support.json"

@@ -34,3 +34,23 @@ class FuseObjectParams(FusionSettings):
         minimum=0.0,
         maximum=1.0,
     )
+    mirrored_height: float = parameter(
+        0.07,
+        "height over the support plane up to which depth of the coarse object is taken for the plane's mirror image in "
+        "an upright face; 0 for none; acts with consistency weighting",
+        unit="height of the object",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    mirrored_from: float = parameter(
+        0.7,
+        "mean confidence in the object's depth up to which mirror images are not believed",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    mirrored_full: float = parameter(
+        0.75,
+        "mean confidence in the object's depth from which they are",
+        minimum=0.0,
+        maximum=1.0,
+    )

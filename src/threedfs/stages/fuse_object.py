@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from threedfs.fusion.doubt import DoubtRule, doubt_mirrored, rate_shown
 from threedfs.fusion.fuse import VoteRule, fuse_views, limit_clip_distance, start_fusion
 from threedfs.geometry.grid import cover_box
 from threedfs.io.consistency import read_consistency
@@ -11,8 +12,10 @@ from threedfs.io.keyframes import read_keyframes
 from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.io.votes import read_votes
 from threedfs.job import Job
+from threedfs.locate.coarse import mark_coarse
 from threedfs.params.fuse_object import FuseObjectParams
 from threedfs.params.rules import make_rule
+from threedfs.segment.outline import draw_voxels
 
 
 def run(
@@ -21,17 +24,18 @@ def run(
     depth: list[Path],
     consistency: Path,
     support: Path,
-    scene: Path | None,
+    scene: Path,
     volume: Path,
     params: FuseObjectParams,
     job: Job,
 ) -> None:
     """Lay the grid over the object's box, fuse, and write the volume.
 
-    With `fuse_object.grid: region` the grid is that of the scene's volume, and `longest_side` says nothing.
+    With `fuse_object.grid: region` the grid is that of the scene's volume, and `longest_side` says nothing. Mirror
+    images of the support plane are told by the coarse object in that volume.
     """
-    place = read_support(support)
-    grid = cover_box(place.box, params.longest_side) if scene is None else read_volume(scene).grid
+    place, coarse, entries = read_support(support), read_volume(scene), read_keyframes(keyframes)
+    grid = cover_box(place.box, params.longest_side) if params.grid == "object" else coarse.grid
     clip_distance = limit_clip_distance(
         params.clip_distance, place.figures["thickness"], params.thickness_share, grid.spacing
     )
@@ -43,7 +47,15 @@ def run(
         threads=job.threads,
     )
     trust = read_consistency(consistency) if params.weighting == "consistency" else None
-    votes = read_votes(read_keyframes(keyframes), depth, trust)
+    votes = read_votes(entries, depth, trust)
+    if trust is not None and params.mirrored_height > 0:
+        around, solid = mark_coarse(coarse.grid, coarse.sdf, place)
+        shown = draw_voxels(solid, around, {name: entry.view for name, entry in entries.items()}, job.threads)
+        rule = make_rule(DoubtRule, params)
+        sureness = rate_shown(read_votes(entries, depth, trust), shown, place, rule)
+        if sureness < 1:
+            job.progress.note(f"depth is unsure: mirror images of the support plane count {sureness:.2f}")
+            votes = doubt_mirrored(votes, shown, place, rule, sureness)
     sdf, seen = fuse_views(job.progress.track(votes, "keyframe", len(depth)), fused)
     job.progress.note(f"grid {grid.shape}, voxel {grid.spacing:.4g}, clip distance {clip_distance / grid.spacing:.1f}")
     write_volume(volume, Volume(grid, sdf, seen), job.header)

@@ -10,8 +10,8 @@ from numba import njit
 from scipy.ndimage import gaussian_filter
 
 from threedfs.geometry.transfer import px_from_px, transfer
+from threedfs.ramp import rise
 from threedfs.surface.keyframe_depth import KeyframeDepth
-from threedfs.surface.trust import rise
 from threedfs.types import View
 
 _LEAST_COSINE = 0.3

@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from threedfs.fusion.softmax import SoftMaximum, facing_cosine
+from threedfs.locate.mirrored import believe_mirrored, find_mirrored
 from threedfs.read_ahead import map_ahead
 from threedfs.surface.adopt import AdoptRule, LentDepth, adopt_depth, lend_depth
 from threedfs.surface.keyframe_depth import KeyframeDepth
-from threedfs.surface.mirrored import believe_mirrored, find_mirrored
 from threedfs.surface.trust import TrustRule, rate_sureness, share_matched, trust_aslant, trust_depth, trust_free
 from threedfs.types import Support, View
 

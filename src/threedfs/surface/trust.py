@@ -8,6 +8,8 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import gaussian_filter
 
+from threedfs.ramp import rise
+
 _BARE, _SURE = 0.2, 0.6
 """Sureness up to which space is no freer than its depth is trusted, and from which depth says all it can of it."""
 
@@ -146,8 +148,3 @@ def rate_sureness(trust: Iterable[np.ndarray], masks: Iterable[np.ndarray], rule
     """
     means = [own[mask].mean(dtype=np.float64) for own, mask in zip(trust, masks, strict=True) if mask.any()]
     return float(rise(np.mean(means), rule.sure_from, rule.sure_full))
-
-
-def rise(values: np.ndarray, start: float, full: float) -> np.ndarray:
-    """Return 1 from `full` on, 0 up to `start`, and a line between; `full` decides where they do not leave room."""
-    return np.where(np.asarray(values) >= full, 1.0, np.clip((values - start) / max(full - start, 1e-9), 0.0, 1.0))
