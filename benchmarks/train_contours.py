@@ -1,6 +1,6 @@
 """Train the forest of the contour detector (`make contours`): the same seed gives the same bytes.
 
-    python benchmarks/train_contours.py [--seed 23] [--leaves 150 --still-lifes 3 --windows 260 --trees 4]
+    python benchmarks/train_contours.py [--seed 23] [--leaves 150 --still-lifes 100 --windows 200 --trees 4]
         [--output FILE]
 
 Nothing is read: pictures are painted and rendered. Without --output the forest of the package is replaced, and its

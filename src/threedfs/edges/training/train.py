@@ -41,11 +41,11 @@ class Plan:
 
     tiles: int = 30
     leaves: int = 150
-    still_lifes: int = 3
+    still_lifes: int = 100
     views: int = 6
     height: int = 240
     width: int = 320
-    windows: int = 260
+    windows: int = 200
     trees: int = 4
     feature_share: float = 0.2
     growth: Growth = field(default_factory=Growth)
