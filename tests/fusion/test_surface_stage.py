@@ -69,11 +69,11 @@ def shows_sphere(table, view, depth):
     return np.linalg.norm(points - table.centre, axis=-1) < table.radius + 1e-6
 
 
-def write_scene(folder, table, *, pit=False, lost=False, lent=False, empty=False):
+def write_scene(folder, table, *, pit=False, lost=False, lent=False, empty=False, contradicted=0):
     """Write what the stage reads.
 
     With a pit, one side of the sphere is bare, and its depth too far away; with that side lost, all views agree on it.
-    With depth that is lent there, every third view is right.
+    With depth that is lent there, every third view is right. So many views may have a surface before it.
     """
     views, maps, masks, photos = table.views, {}, {}, {}
     behind = FAR_BEHIND if lost else LITTLE_BEHIND if lent else BEHIND
@@ -92,9 +92,10 @@ def write_scene(folder, table, *, pit=False, lost=False, lent=False, empty=False
         write_depth_map(folder / "depth" / f"{view.name}.zarr.zip", DepthMap(depth, 0 * photometric, photometric), {})
         agree = np.where(bare & (pit or lent), 1 + rank % 2, 9).astype(np.uint8)
         silent, free = np.zeros_like(agree), np.zeros(agree.shape, np.float32)
+        too_far = np.where(bare, contradicted, 0).astype(np.uint8)
         share = np.where(bare & (pit or lent), 0.7, 1.0).astype(np.float32)
         maps[view.name] = ConsistencyMap(
-            confidence=share, agree=agree, too_near=silent, too_far=silent, free_depth=free
+            confidence=share, agree=agree, too_near=silent, too_far=too_far, free_depth=free
         )
     write_consistency(folder / "consistency.zarr.zip", maps.items(), {})
     write_keyframes(folder / "keyframes.json", [Keyframe(view, (), 0.5, 3.0) for view in views], {}, object_pixels=80.0)
@@ -222,6 +223,14 @@ def test_the_same_bytes_twice(pitted):
 )
 def test_every_parameter_acts(pitted, change):
     assert work(pitted, **change)[1][0] != work(pitted)[1][0]
+
+
+@pytest.mark.parametrize("change", [{"free_textured": 1.0}, {"textured_from": 0.85}, {"textured_full": 0.55}], ids=str)
+def test_what_textured_things_are_believed_acts(table, tmp_path, change):
+    """Contract: where photographs around a pit match, and four of twelve keyframes contradict it."""
+    write_scene(tmp_path, table, pit=True, contradicted=4)
+    base = {"free_textured": 4.0, "textured_from": 0.5, "textured_full": 0.9, "matched_reach": 0.3, "sure_full": 0.3}
+    assert work(tmp_path, **(base | change))[1][0] != work(tmp_path, **base)[1][0]
 
 
 @pytest.fixture(scope="module")

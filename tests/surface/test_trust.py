@@ -18,6 +18,9 @@ RULE = TrustRule(
     free_contradicted=0.15,
     free_from=0.4,
     free_full=0.6,
+    free_textured=2.0,
+    textured_from=0.6,
+    textured_full=0.8,
     agreed_from=5.0,
     agreed_full=9.0,
     aslant_from=0.3,
@@ -92,8 +95,15 @@ def test_depth_that_many_views_agree_on_is_trusted_though_the_surface_turns_away
 def test_space_that_few_contradict_is_free_however_few_agree():
     """Exact: of 20 keyframes fewer than three may have a surface there; elsewhere the trust in the depth decides."""
     own, too_far = np.float32([0.0, 0.2, 0.2, 0.9]), np.uint8([0, 2, 3, 20])
-    free = trust_free(own, too_far, np.ones(4), 20, 1.0, RULE)
+    free = trust_free(own, too_far, np.full(4, 0.6), 20, 1.0, RULE)
     np.testing.assert_array_equal(free, np.float32([1, 1, 0.2, 0.9]))
+
+
+def test_more_may_contradict_where_nearly_all_photographs_match():
+    """Exact: twice as many where 0.8 match, half as many more at 0.7."""
+    own, too_far = np.full(4, 0.2, np.float32), np.uint8([4, 5, 5, 6])
+    free = trust_free(own, too_far, np.array([0.7, 0.7, 0.8, 0.8]), 20, 1.0, RULE)
+    np.testing.assert_array_equal(free, np.float32([1, 0.2, 1, 0.2]))
 
 
 @pytest.mark.parametrize(("sureness", "matched", "believed"), [(1.0, 0.5, 0.5), (0.4, 0.6, 0.5), (0.2, 1.0, 0.0)])

@@ -103,6 +103,20 @@ class SurfaceParams(SmoothingSettings):
         maximum=1.0,
     )
     free_full: float = parameter(0.6, "share of such pixels from which that space is free", minimum=0.0, maximum=1.0)
+    free_textured: float = parameter(
+        2.5,
+        "times as many keyframes may have a surface before it where nearly all photographs around match; 1 for as many",
+        minimum=1.0,
+    )
+    textured_from: float = parameter(
+        0.6,
+        "share of the object's pixels around that match, up to which no more keyframes than free_contradicted says may",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    textured_full: float = parameter(
+        0.8, "share of such pixels from which free_textured times as many may", minimum=0.0, maximum=1.0
+    )
     lent_from: float = parameter(
         6.0,
         "views that agree with a depth from which other keyframes may adopt it",

@@ -30,6 +30,9 @@ class TrustRule:
     free_contradicted: float
     free_from: float
     free_full: float
+    free_textured: float
+    textured_from: float
+    textured_full: float
     agreed_from: float
     agreed_full: float
     aslant_from: float
@@ -113,7 +116,8 @@ def trust_free(
 
     Not in the paper. Between spines and in hollows hardly two views have the same depth, mostly as it is too near; but
     the space before it is free all the same, unless others have a surface there. That none has says little where few
-    photographs match around, and of a bare object.
+    photographs match around, and of a bare object. Where nearly all match, a part stands before it only in some views:
+    then more of them may have one.
 
     Parameters
     ----------
@@ -129,7 +133,8 @@ def trust_free(
         Of the object's depth, in [0, 1] (`rate_sureness`).
     rule : TrustRule
     """
-    free = (too_far < rule.free_contradicted * keyframes) * rise(matched, rule.free_from, rule.free_full)
+    times = 1 + (rule.free_textured - 1) * rise(matched, rule.textured_from, rule.textured_full)
+    free = (too_far < times * rule.free_contradicted * keyframes) * rise(matched, rule.free_from, rule.free_full)
     return np.maximum(trust, rise(sureness, _BARE, _SURE) * free).astype(np.float32)
 
 
