@@ -17,7 +17,7 @@ from pathlib import Path
 import cv2
 import numpy as np
 from scipy.io import loadmat
-from skimage.morphology import thin as skeletonise
+from skimage.morphology import skeletonize
 
 from threedfs.edges.multiscale import multiscale_gradient
 from threedfs.edges.structured import structured_contours
@@ -58,8 +58,8 @@ def main() -> None:
         write_metrics(options.csv, rows)
     renders = held_out_renders(-(-options.renders // VIEWS), VIEWS, 320)
     print(f"{len(renders)} renders")
-    # as thin as the contours of people, or one that goes up in steps would count double
-    compare([(picture.image, [skeletonise(contour_pixels(picture))]) for picture in renders])
+    # as thin as the contours of people, or a staircase would count twice
+    compare([(picture.image, [skeletonize(contour_pixels(picture))]) for picture in renders])
     print_costs()
 
 

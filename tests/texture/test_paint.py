@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from painted_ball import WALL, ball, everywhere, look_from, photograph, ring
 
+import threedfs.texture.bake as bake
 import threedfs.texture.paint as paint
 from threedfs.evaluate.photo_error import measure_photo
 from threedfs.texture.photograph import photograph_texture
@@ -117,6 +118,12 @@ def test_the_share_that_is_not_seen_is_told(photos, painting):
     nothing = paint_from(photos, valid=lambda name: np.zeros((160, 160), bool))
     assert nothing.unseen_share == 1 and nothing.charts == 1
     assert (nothing.textured.image == 128).all()
+
+
+def test_texels_in_blocks_are_the_same(photos, painting, monkeypatch):
+    """Exact."""
+    monkeypatch.setattr(bake, "_BLOCK", 700)
+    assert paint_from(photos).textured.image.tobytes() == painting.textured.image.tobytes()
 
 
 def test_the_same_texels_twice(photos, painting):

@@ -49,7 +49,7 @@ def test_a_triangle_of_no_area_shows_nothing():
 
 
 def test_a_point_is_where_its_view_shows_it(cut):
-    """Exact: projected, the points of one chart are a whole number of pixels from their texels."""
+    """Property: projected, the points of one chart are about a whole number of pixels from their texels."""
     mesh, views, chosen, atlas = cut
     texels = locate_texels(atlas)
     inside = texels.weights.min(axis=1) > 1e-3

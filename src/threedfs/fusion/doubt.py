@@ -12,7 +12,7 @@ from threedfs.ramp import rise
 from threedfs.types import Support, View
 
 Vote = tuple[View, np.ndarray, np.ndarray, np.ndarray]
-"""The view, depth map, confidence and free depth of a keyframe."""
+"""The view of a keyframe, its depth map, confidence and free depth, all (H, W) float32, as `read_votes` yields them."""
 
 
 @dataclass(frozen=True)
@@ -35,6 +35,8 @@ class DoubtRule:
 def rate_shown(votes: Iterable[Vote], shown: Mapping[str, np.ndarray], support: Support, rule: DoubtRule) -> float:
     """Return how sure the object's depth is, in [0, 1], by the mean confidence in it but for mirror images.
 
+    The mean is over all pixels of all views that show the object, also those without depth; 1 if there are none.
+
     Parameters
     ----------
     votes : iterable of Vote
@@ -48,7 +50,7 @@ def rate_shown(votes: Iterable[Vote], shown: Mapping[str, np.ndarray], support: 
         own = shown[view.name] & ~find_mirrored(view, shown[view.name], depth, support, rule.mirrored_height)
         total += float(confidence[own].sum(dtype=np.float64))
         pixels += int(own.sum())
-    return float(rise(total / max(pixels, 1), rule.mirrored_from, rule.mirrored_full))
+    return float(rise(total / pixels, rule.mirrored_from, rule.mirrored_full)) if pixels else 1.0
 
 
 def doubt_mirrored(
@@ -64,14 +66,9 @@ def doubt_mirrored(
     votes, shown, support, rule
         As `rate_shown` takes them.
     sureness : float
-        As it returns it. Below a half mirror images do not say that the space before them is free, either.
+        As it returns it. Mirror images tell only of that share of their rays that it is free.
     """
     for view, depth, confidence, free_depth in votes:
         mirrored = find_mirrored(view, shown[view.name], depth, support, rule.mirrored_height)
-        blind = mirrored & (sureness < 0.5)
-        yield (
-            view,
-            depth,
-            confidence * believe_mirrored(mirrored, sureness),
-            np.where(blind, np.float32(0), free_depth),
-        )
+        free = np.where(mirrored, np.float32(sureness) * np.minimum(free_depth, depth), free_depth)
+        yield view, depth, confidence * believe_mirrored(mirrored, sureness), free

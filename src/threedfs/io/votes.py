@@ -4,12 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
+from typing import overload
 
 import numpy as np
 
 from threedfs.io.consistency import ConsistencyStore
 from threedfs.io.depth_maps import read_depth_map
 from threedfs.types import Keyframe, View
+
+
+@overload
+def read_votes(
+    keyframes: Mapping[str, Keyframe], depth: Sequence[Path], consistency: ConsistencyStore
+) -> Iterator[tuple[View, np.ndarray, np.ndarray, np.ndarray]]: ...
+
+
+@overload
+def read_votes(
+    keyframes: Mapping[str, Keyframe], depth: Sequence[Path], consistency: ConsistencyStore | None
+) -> Iterator[tuple[View, np.ndarray, np.ndarray | None, np.ndarray | None]]: ...
 
 
 def read_votes(

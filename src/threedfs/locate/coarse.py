@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from threedfs.geometry.grid import cut_grid, world_from_index
+from threedfs.geometry.grid import cut_grid, voxel_centres
 from threedfs.locate.height import height_above
 from threedfs.types import Support, VoxelGrid
 
@@ -15,6 +15,8 @@ _CLEARANCE = 1.0
 def mark_coarse(grid: VoxelGrid, sdf: np.ndarray, support: Support) -> tuple[VoxelGrid, np.ndarray]:
     """Return the part of a grid around the object's box, and what is solid there over the plane, (nx, ny, nz) bool.
 
+    What no view sees is not solid.
+
     Parameters
     ----------
     grid : VoxelGrid
@@ -23,7 +25,6 @@ def mark_coarse(grid: VoxelGrid, sdf: np.ndarray, support: Support) -> tuple[Vox
     support : Support
     """
     around, part = cut_grid(grid, support.box)
-    index = np.stack(np.meshgrid(*(np.arange(count) for count in around.shape), indexing="ij"), axis=-1)
-    along = world_from_index(around, index) @ support.box.axes.T
+    along = voxel_centres(around) @ support.box.axes.T
     inside = ((along >= support.box.low) & (along <= support.box.high)).all(axis=-1)
     return around, inside & (sdf[part] < 0) & (height_above(support.plane, around) > _CLEARANCE * grid.spacing)

@@ -40,6 +40,6 @@ def believe_mirrored(mirrored: np.ndarray, sureness: float) -> np.ndarray:
     mirrored : (H, W) bool
         See `find_mirrored`.
     sureness : float
-        Of the object's depth, in [0, 1] (`rate_sureness`).
+        Of the object's depth, in [0, 1] (`rate_sureness`, or where no masks are known yet `rate_shown`).
     """
     return np.where(mirrored, np.float32(sureness), np.float32(1))

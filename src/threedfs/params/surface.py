@@ -105,7 +105,7 @@ class SurfaceParams(SmoothingSettings):
     free_full: float = parameter(0.6, "share of such pixels from which that space is free", minimum=0.0, maximum=1.0)
     free_textured: float = parameter(
         2.5,
-        "times as many keyframes may have a surface before it where nearly all photographs around match; 1 for as many",
+        "factor on free_contradicted where nearly all photographs around match",
         minimum=1.0,
     )
     textured_from: float = parameter(

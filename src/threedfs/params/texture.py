@@ -29,13 +29,13 @@ class TextureParams:
     )
     seam_cost: float = parameter(
         0.5,
-        "cost of a cut between two pieces of the texture along a mean edge, in costs of a mean face that a piece shows "
-        "with no area",
+        "cost of a cut between two pieces of the texture along a mean edge, relative to that of laying out a mean face "
+        "by a photograph that shows it with no area",
         minimum=0.0,
     )
     texels: float = parameter(
         1.5,
-        "texels along a row for each pixel of the photograph that shows a face large",
+        "texels along a row for each pixel of the photograph that gives a piece of the texture its shape",
         exclusive_minimum=0.0,
         maximum=4.0,
     )

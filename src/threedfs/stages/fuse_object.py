@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Iterator, Mapping
 from pathlib import Path
 
-from threedfs.fusion.doubt import DoubtRule, doubt_mirrored, rate_shown
+from threedfs.fusion.doubt import DoubtRule, Vote, doubt_mirrored, rate_shown
 from threedfs.fusion.fuse import VoteRule, fuse_views, limit_clip_distance, start_fusion
 from threedfs.geometry.grid import cover_box
-from threedfs.io.consistency import read_consistency
+from threedfs.io.consistency import ConsistencyStore, read_consistency
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.io.votes import read_votes
@@ -16,6 +17,7 @@ from threedfs.locate.coarse import mark_coarse
 from threedfs.params.fuse_object import FuseObjectParams
 from threedfs.params.rules import make_rule
 from threedfs.segment.outline import draw_voxels
+from threedfs.types import Keyframe, Support
 
 
 def run(
@@ -34,8 +36,8 @@ def run(
     With `fuse_object.grid: region` the grid is that of the scene's volume, and `longest_side` says nothing. Mirror
     images of the support plane are told by the coarse object in that volume.
     """
-    place, coarse, entries = read_support(support), read_volume(scene), read_keyframes(keyframes)
-    grid = cover_box(place.box, params.longest_side) if params.grid == "object" else coarse.grid
+    place, entries = read_support(support), read_keyframes(keyframes)
+    grid = cover_box(place.box, params.longest_side) if params.grid == "object" else read_volume(scene).grid
     clip_distance = limit_clip_distance(
         params.clip_distance, place.figures["thickness"], params.thickness_share, grid.spacing
     )
@@ -47,15 +49,30 @@ def run(
         threads=job.threads,
     )
     trust = read_consistency(consistency) if params.weighting == "consistency" else None
-    votes = read_votes(entries, depth, trust)
+    votes: Iterable[tuple] = read_votes(entries, depth, trust)
     if trust is not None and params.mirrored_height > 0:
-        around, solid = mark_coarse(coarse.grid, coarse.sdf, place)
-        shown = draw_voxels(solid, around, {name: entry.view for name, entry in entries.items()}, job.threads)
-        rule = make_rule(DoubtRule, params)
-        sureness = rate_shown(read_votes(entries, depth, trust), shown, place, rule)
-        if sureness < 1:
-            job.progress.note(f"depth is unsure: mirror images of the support plane count {sureness:.2f}")
-            votes = doubt_mirrored(votes, shown, place, rule, sureness)
+        votes = _doubt_votes(entries, depth, trust, place, read_volume(scene), params, job)
     sdf, seen = fuse_views(job.progress.track(votes, "keyframe", len(depth)), fused)
     job.progress.note(f"grid {grid.shape}, voxel {grid.spacing:.4g}, clip distance {clip_distance / grid.spacing:.1f}")
     write_volume(volume, Volume(grid, sdf, seen), job.header)
+
+
+def _doubt_votes(
+    entries: Mapping[str, Keyframe],
+    depth: list[Path],
+    trust: ConsistencyStore,
+    place: Support,
+    coarse: Volume,
+    params: FuseObjectParams,
+    job: Job,
+) -> Iterator[Vote]:
+    """Return the votes of the keyframes; mirror images are doubted where the object's depth is unsure."""
+    grid, solid = mark_coarse(coarse.grid, coarse.sdf, place)
+    shown = draw_voxels(solid, grid, {name: entry.view for name, entry in entries.items()}, job.threads)
+    rule = make_rule(DoubtRule, params)
+    sureness = rate_shown(read_votes(entries, depth, trust), shown, place, rule)
+    votes = read_votes(entries, depth, trust)
+    if sureness == 1:
+        return votes
+    job.progress.note(f"depth is unsure: mirror images of the support plane count {sureness:.2f}")
+    return doubt_mirrored(votes, shown, place, rule, sureness)

@@ -14,6 +14,9 @@ from threedfs.texture.textured import TexturedMesh
 from threedfs.texture.vertices import Reader, spread_colors
 from threedfs.types import Mesh, View
 
+_BLOCK = 250_000
+"""Texels at once: each has a sample, and a weight, of every view."""
+
 
 def bake_texture(
     mesh: Mesh, views: Sequence[View], atlas: Atlas, areas: np.ndarray, read_image: Reader
@@ -36,13 +39,17 @@ def bake_texture(
         Gives the image (H, W, 3) uint8 RGB of a view by its name.
     """
     texels = locate_texels(atlas)
-    seen = areas.any(axis=1)[texels.face]
-    found = np.rint(texels.interpolate(mesh, _color_vertices(mesh, views, areas, read_image))).astype(np.uint8)
-    points = texels.interpolate(mesh, mesh.vertices)
-    found[seen] = blend_photographs(points[seen], texels.face[seen], areas, views, read_image)
     image, blank = np.zeros((*atlas.shape, 3), np.uint8), np.ones(atlas.shape, bool)
-    image[texels.row, texels.column] = found
     blank[texels.row, texels.column] = False
+    seen = areas.any(axis=1)[texels.face]
+    if not seen.all():
+        some, colors = texels.take(~seen), _color_vertices(mesh, views, areas, read_image)
+        image[some.row, some.column] = np.rint(some.interpolate(mesh, colors))
+    shown = texels.take(seen)
+    for start in range(0, len(shown.face), _BLOCK):
+        some = shown.take(slice(start, start + _BLOCK))
+        points = some.interpolate(mesh, mesh.vertices)
+        image[some.row, some.column] = blend_photographs(points, some.face, areas, views, read_image)
     nearest = distance_transform_edt(blank, return_distances=False, return_indices=True)
     return TexturedMesh(mesh, atlas.corners, image[tuple(nearest)])
 

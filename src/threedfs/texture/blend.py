@@ -12,41 +12,35 @@ from threedfs.texture.pixels import sample_colors
 from threedfs.texture.vertices import Reader
 from threedfs.types import View
 
-_BLOCK = 500_000
-"""Points at once: each has a sample of every view."""
-
 
 def blend_photographs(
     points: np.ndarray, part: np.ndarray, areas: np.ndarray, views: Sequence[View], read_image: Reader
 ) -> np.ndarray:
-    """Return the colour (N, 3) uint8 of points: in each channel the median of all views, weighed by size.
+    """Return the colour (N, 3) uint8 of points: in each channel the weighted median of the views that show it.
 
-    A median, as a highlight, or a thing in between, is in few of them. A view weighs what it shows the point large.
+    A median, as a highlight, or a thing in between, is in few. A view's weight is the area at which it shows the
+    part of the mesh. Of two values in the middle the lower one counts.
 
     Parameters
     ----------
     points : (N, 3) float64
         World.
     part : (N,) int64
-        Of the mesh that each point lies on, a row of `areas`; a view must show it.
+        Of the mesh that each point lies on, a row of `areas`; one view at least must show it.
     areas : (P, views) float32
         In which each view shows each part; 0 where it does not.
     views : sequence of View
     read_image : callable
         Gives the image (H, W, 3) uint8 RGB of a view by its name.
     """
-    colors = np.empty((len(points), 3), np.uint8)
-    for start in range(0, len(points), _BLOCK):
-        some = slice(start, start + _BLOCK)
-        weights = areas[part[some]]
-        samples = np.zeros((*weights.shape, 3), np.uint8)
-        for rank, view in enumerate(views):
-            shown = np.flatnonzero(weights[:, rank] > 0)
-            if len(shown):
-                image = read_image(view.name).astype(np.float32)
-                samples[shown, rank] = np.rint(sample_colors(image, project(view, points[some][shown])[0]))
-        colors[some] = _weighted_median(samples, weights)
-    return colors
+    weights = areas[part]
+    samples = np.zeros((*weights.shape, 3), np.uint8)
+    for rank, view in enumerate(views):
+        shown = np.flatnonzero(weights[:, rank] > 0)
+        if len(shown):
+            image = read_image(view.name).astype(np.float32)
+            samples[shown, rank] = np.rint(sample_colors(image, project(view, points[shown])[0]))
+    return _weighted_median(samples, weights)
 
 
 @njit(cache=True)

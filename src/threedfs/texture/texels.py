@@ -32,6 +32,10 @@ class Texels:
     face: np.ndarray
     weights: np.ndarray
 
+    def take(self, which: np.ndarray | slice) -> Texels:
+        """Return some of them."""
+        return Texels(self.row[which], self.column[which], self.face[which], self.weights[which])
+
     def interpolate(self, mesh: Mesh, values: np.ndarray) -> np.ndarray:
         """Return the values (N, C) of texels, between those (V, C) of the mesh's vertices."""
         return (self.weights[:, :, None] * values[mesh.faces[self.face]]).sum(axis=1)
