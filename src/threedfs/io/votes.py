@@ -16,13 +16,15 @@ from threedfs.types import Keyframe, View
 @overload
 def read_votes(
     keyframes: Mapping[str, Keyframe], depth: Sequence[Path], consistency: ConsistencyStore
-) -> Iterator[tuple[View, np.ndarray, np.ndarray, np.ndarray]]: ...
+) -> Iterator[tuple[View, np.ndarray, np.ndarray, np.ndarray]]:
+    """With consistency all four are there."""
 
 
 @overload
 def read_votes(
     keyframes: Mapping[str, Keyframe], depth: Sequence[Path], consistency: ConsistencyStore | None
-) -> Iterator[tuple[View, np.ndarray, np.ndarray | None, np.ndarray | None]]: ...
+) -> Iterator[tuple[View, np.ndarray, np.ndarray | None, np.ndarray | None]]:
+    """Without it the last two may be None."""
 
 
 def read_votes(
