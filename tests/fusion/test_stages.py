@@ -64,6 +64,20 @@ def lay_out(folder, scene):
     write_frames(folder / "frames.zarr.zip", frames, HEADER, ordered=True, source_shape=(240, 320))
 
 
+def fuse(folder, volume, params, job, trust=None):
+    """Run fuse_object on what is in a folder, with another trust if it is given."""
+    fuse_object.run(
+        keyframes=folder / "keyframes.json",
+        depth=sorted((folder / "depth").iterdir()),
+        consistency=trust or folder / "consistency.zarr.zip",
+        support=folder / "support.json",
+        scene=folder / "scene.zarr.zip",
+        volume=volume,
+        params=params,
+        job=job,
+    )
+
+
 def run_all(folder, threads=1, point_deviation=0.05):
     job = Job(Progress("test"), HEADER, threads)
     depth, semidense, edges = (sorted((folder / name).iterdir()) for name in ("depth", "semidense", "edges"))
@@ -94,16 +108,7 @@ def run_all(folder, threads=1, point_deviation=0.05):
         params=LocateParams(plane_candidates=500, point_deviation=point_deviation),
         job=job,
     )
-    fuse_object.run(
-        **at,
-        depth=depth,
-        consistency=agreement,
-        support=folder / "support.json",
-        scene=folder / "scene.zarr.zip",
-        volume=folder / "object.zarr.zip",
-        params=FuseObjectParams(longest_side=60),
-        job=job,
-    )
+    fuse(folder, folder / "object.zarr.zip", FuseObjectParams(longest_side=60), job)
     locate_object.run(
         **at,
         volume=folder / "object.zarr.zip",
@@ -151,16 +156,8 @@ def test_support_and_box(results, table):
 
 def test_one_grid_for_scene_and_object(results, tmp_path):
     """Contract: with `grid: region` the object's field has the voxels of the scene's, and its own plain fusion."""
-    fuse_object.run(
-        keyframes=results / "keyframes.json",
-        depth=sorted((results / "depth").iterdir()),
-        consistency=results / "consistency.zarr.zip",
-        support=results / "support.json",
-        scene=results / "scene.zarr.zip",
-        volume=tmp_path / "object.zarr.zip",
-        params=FuseObjectParams(grid="region", thickness_share=0.0),
-        job=Job(Progress("test"), HEADER, 1),
-    )
+    params = FuseObjectParams(grid="region", thickness_share=0.0)
+    fuse(results, tmp_path / "object.zarr.zip", params, Job(Progress("test"), HEADER, 1))
     own, scene = read_volume(tmp_path / "object.zarr.zip"), read_volume(results / "scene.zarr.zip")
     assert own.grid.shape == scene.grid.shape and own.grid.spacing == scene.grid.spacing
     assert np.array_equal(own.grid.origin, scene.grid.origin) and np.array_equal(own.grid.axes, scene.grid.axes)
@@ -178,24 +175,16 @@ def test_parameters_of_doubt_act(results, tmp_path, change):
     )
     write_consistency(tmp_path / "consistency.zarr.zip", unsure, HEADER)
 
-    def fuse(**settings):
-        log = io.StringIO()
+    def doubt(**settings):
+        log, volume = io.StringIO(), tmp_path / "object.zarr.zip"
         base = {"longest_side": 60, "mirrored_height": 0.3, "mirrored_from": 0.6, "mirrored_full": 1.0}
-        fuse_object.run(
-            keyframes=results / "keyframes.json",
-            depth=sorted((results / "depth").iterdir()),
-            consistency=tmp_path / "consistency.zarr.zip",
-            support=results / "support.json",
-            scene=results / "scene.zarr.zip",
-            volume=tmp_path / "object.zarr.zip",
-            params=FuseObjectParams(**(base | settings)),
-            job=Job(Progress("test", log), HEADER, 1),
-        )
-        return read_volume(tmp_path / "object.zarr.zip").sdf, log.getvalue()
+        job = Job(Progress("test", log), HEADER, 1)
+        fuse(results, volume, FuseObjectParams(**(base | settings)), job, tmp_path / "consistency.zarr.zip")
+        return read_volume(volume).sdf, log.getvalue()
 
-    plain, said = fuse()
+    plain, said = doubt()
     assert "depth is unsure: mirror images of the support plane count 0." in said
-    assert not np.array_equal(plain, fuse(**change)[0])
+    assert not np.array_equal(plain, doubt(**change)[0])
 
 
 def test_mesh_is_the_sphere_closed(results, table):

@@ -6,7 +6,10 @@ import numpy as np
 import trimesh
 
 from threedfs.geometry.rigid import look_at
+from threedfs.texture.charts import Atlas, cut_charts
+from threedfs.texture.choose import choose_views, measure_areas
 from threedfs.texture.photograph import Photographer
+from threedfs.texture.vertices import GRAZING, sample_vertices
 from threedfs.types import Camera, Mesh, View
 
 CAMERA = Camera(160, 160, 250.0, 250.0, 79.5, 79.5)
@@ -56,3 +59,11 @@ def photograph(mesh: Mesh, view: View, color=pattern) -> np.ndarray:
 def everywhere(name: str) -> np.ndarray:
     """Say that every pixel shows the scene."""
     return np.ones(CAMERA.shape, bool)
+
+
+def cut_ball(photos: dict[str, np.ndarray], subdivisions: int) -> tuple[Mesh, list[View], np.ndarray, Atlas]:
+    """Return a ball, its views, the view of each face, and the charts, of a texel to a pixel."""
+    mesh, views = ball(subdivisions), ring(8)
+    samples = sample_vertices(mesh, views, photos.__getitem__, everywhere, GRAZING)
+    chosen = choose_views(mesh, measure_areas(mesh, views, samples), 0.5)
+    return mesh, views, chosen, cut_charts(mesh, views, chosen, 1.0)

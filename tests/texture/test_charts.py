@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-from painted_ball import ball, everywhere, ring
+from painted_ball import ball, cut_ball, ring
 
 from threedfs.geometry.projection import project
 from threedfs.texture.charts import cut_charts, pack
-from threedfs.texture.choose import adjacent_faces, choose_views, measure_areas
-from threedfs.texture.vertices import GRAZING, sample_vertices
+from threedfs.texture.choose import adjacent_faces
 
 MARGIN = 2
 
@@ -15,10 +14,7 @@ MARGIN = 2
 @pytest.fixture(scope="module")
 def cut(photos):
     """A ball, its views, the view of each face, and the charts."""
-    mesh, views = ball(4), ring(8)
-    samples = sample_vertices(mesh, views, photos.__getitem__, everywhere, GRAZING)
-    chosen = choose_views(mesh, measure_areas(mesh, views, samples), 0.5)
-    return mesh, views, chosen, cut_charts(mesh, views, chosen, 1.0)
+    return cut_ball(photos, 4)
 
 
 def count_covers(place, size, shape):

@@ -2,23 +2,18 @@
 
 import numpy as np
 import pytest
-from painted_ball import ball, everywhere, ring
+from painted_ball import cut_ball
 
 from threedfs.geometry.projection import project
 from threedfs.texture.charts import Atlas, cut_charts
-from threedfs.texture.choose import choose_views, measure_areas
 from threedfs.texture.texels import locate_texels
-from threedfs.texture.vertices import GRAZING, sample_vertices
 from threedfs.types import Mesh
 
 
 @pytest.fixture(scope="module")
 def cut(photos):
     """A ball, its views, the view of each face, and the charts, of a texel to a pixel."""
-    mesh, views = ball(3), ring(8)
-    samples = sample_vertices(mesh, views, photos.__getitem__, everywhere, GRAZING)
-    chosen = choose_views(mesh, measure_areas(mesh, views, samples), 0.5)
-    return mesh, views, chosen, cut_charts(mesh, views, chosen, 1.0)
+    return cut_ball(photos, 3)
 
 
 def triangle(*corners):
