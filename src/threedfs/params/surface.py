@@ -151,6 +151,24 @@ class SurfaceParams(SmoothingSettings):
         maximum=1.0,
     )
     sure_hull_trust: float = parameter(0.3, "the same on an object whose depth is sure", minimum=0.0, maximum=1.0)
+    hollow_depth: float = parameter(
+        0.02,
+        "depth inside the hull of the keyframes' masks from which depth tells of a hollow",
+        unit="longest side of the grid",
+        exclusive_minimum=0.0,
+        maximum=1.0,
+    )
+    hollow_agree: float = parameter(5.0, "views that must agree on such depth", minimum=1.0)
+    round_full: float = parameter(
+        0.05,
+        "share of such depth that so many agree on, up to which a bare object has no hollows but those that its masks "
+        "show: the hull counts as round_trust, and depth that few views see not at all",
+        minimum=0.0,
+    )
+    round_from: float = parameter(
+        0.1, "share of such depth from which it may have some, and is not round", exclusive_minimum=0.0
+    )
+    round_trust: float = parameter(0.7, "hull_trust of a round object", minimum=0.0, maximum=1.0)
     sure_clip_share: float = parameter(
         0.7,
         "clip distance of an object whose depth is sure, as a share of that of fuse_object, which a bare one has",

@@ -10,6 +10,7 @@ from threedfs.crops.place import measure_object
 from threedfs.errors import UserError
 from threedfs.fusion.fuse import VoteRule, limit_clip_distance, start_fusion
 from threedfs.hull.grid import lay_grid
+from threedfs.hull.inside import find_inside
 from threedfs.io.appearance import read_appearance
 from threedfs.io.colored_meshes import write_colored_mesh
 from threedfs.io.consistency import read_consistency
@@ -34,6 +35,7 @@ from threedfs.segment.refine import RefineRule
 from threedfs.surface.adopt import AdoptRule
 from threedfs.surface.complete import HullRule
 from threedfs.surface.confirmed import confirm_depth
+from threedfs.surface.floor import find_floor
 from threedfs.surface.keyframe_depth import KeyframeDepth
 from threedfs.surface.shape import ShapeRule, shape_surface
 from threedfs.surface.trust import TrustRule
@@ -117,12 +119,24 @@ def run(
         votes = start_fusion(grid, clip, make_rule(VoteRule, fused_as), hidden_distance=hidden, threads=job.threads)
         return votes, clip
 
+    trusted_as = make_rule(TrustRule, params)
+    inside = find_inside(
+        cut.masks,
+        views,
+        valid,
+        grid,
+        place.plane,
+        depth=params.hollow_depth * params.longest_side,
+        tolerance=params.hull_tolerance,
+        threads=job.threads,
+    )
     confirmed = confirm_depth(
         views,
         read,
         start,
         place,
-        make_rule(TrustRule, params),
+        inside,
+        trusted_as,
         make_rule(AdoptRule, params),
         track=lambda names: job.progress.track(names, "keyframe"),
         threads=job.threads,
@@ -140,12 +154,14 @@ def run(
     )
 
     def outline(mesh, within, ramp):
-        """Return the masks of frames, cut within reach of a mesh's own outline."""
+        """Return the masks of frames, cut within reach of a mesh's own outline; keyframes know the floor."""
 
         def cut_out(name):
             view = within[name]
             reach = pixels_at(place.box, view, ramp * voxel)
-            return mask_frame(view, images.image(name), valid[name], draw_silhouette(mesh, view), reach, learnt, refine)
+            own = draw_silhouette(mesh, view)
+            mask = mask_frame(view, images.image(name), valid[name], own, reach, learnt, refine)
+            return mask & ~find_floor(read(name), place, confirmed.sureness, trusted_as) if name in views else mask
 
         found = job.progress.track(map_ahead(cut_out, within, threads=job.threads), "frame", len(within))
         return dict(zip(within, found, strict=True))
@@ -161,7 +177,8 @@ def run(
     seen_by = list(views.values())
     samples = sample_vertices(surface, seen_by, images.image, valid.__getitem__)
     write_colored_mesh(mesh, surface, color_vertices(surface, samples), {"confirmed": confirm_vertices(samples)})
-    job.progress.note(f"{method}: depth is sure by {confirmed.sureness:.2f}; {len(surface.faces)} triangles")
+    found = f"depth is sure by {confirmed.sureness:.2f}, the shape round by {confirmed.roundness:.2f}"
+    job.progress.note(f"{method}: {found}; {len(surface.faces)} triangles")
     posed = read_poses(poses)
     whole = {view.name: view for view in posed.views}
     drawn = outline(surface, views, params.mask_ramp)

@@ -26,6 +26,7 @@ class HullRule:
 
     hull_trust: float
     sure_hull_trust: float
+    round_trust: float
     gap_views: int
     gap_share: float
     gap_odds: float
@@ -37,6 +38,7 @@ def complete_depth(
     bound: np.ndarray,
     filler: np.ndarray,
     sureness: float,
+    roundness: float,
     above: np.ndarray,
     masks: Mapping[str, np.ndarray],
     views: Mapping[str, View],
@@ -58,6 +60,8 @@ def complete_depth(
         (`measure_hull`, by more and more masks that may be wrong).
     sureness : float
         Of the object's depth, in [0, 1] (`rate_sureness`).
+    roundness : float
+        How far the object has no hollows but those that its masks show, in [0, 1] (`rate_roundness`).
     above : (nx, ny, nz) bool
         Voxels above the support plane, which may be filled.
     masks : mapping of str to (H, W) bool
@@ -74,9 +78,8 @@ def complete_depth(
         solid = (field < 0) & above
         return find_gaps(solid, filler, above, masks, views, fused.grid, least_views, rule.gap_odds, threads)
 
-    votes: list[tuple[np.ndarray, float | np.ndarray]] = [
-        (hull, (1 - sureness) * rule.hull_trust + sureness * rule.sure_hull_trust)
-    ]
+    trust = (1 - sureness) * rule.hull_trust + sureness * rule.sure_hull_trust
+    votes: list[tuple[np.ndarray, float | np.ndarray]] = [(hull, trust + roundness * (rule.round_trust - trust))]
     votes.append((hull, _trust_around(gaps_of(np.maximum(fused.result_with(votes), bound)))))
     field = np.maximum(fused.result_with(votes), bound)
     return np.where(gaps_of(field), np.minimum(field, filler), field)

@@ -8,11 +8,21 @@ from dataclasses import dataclass
 import numpy as np
 
 from threedfs.fusion.softmax import SoftMaximum, facing_cosine
+from threedfs.geometry.projection import backproject_map
+from threedfs.hull.inside import HullInside
 from threedfs.locate.mirrored import believe_mirrored, find_mirrored
 from threedfs.read_ahead import map_ahead
 from threedfs.surface.adopt import AdoptRule, LentDepth, adopt_depth, lend_depth
 from threedfs.surface.keyframe_depth import KeyframeDepth
-from threedfs.surface.trust import TrustRule, rate_sureness, share_matched, trust_aslant, trust_depth, trust_free
+from threedfs.surface.trust import (
+    TrustRule,
+    rate_roundness,
+    rate_sureness,
+    share_matched,
+    trust_aslant,
+    trust_depth,
+    trust_free,
+)
 from threedfs.types import Support, View
 
 
@@ -28,6 +38,8 @@ class ConfirmedDepth:
         Of those votes, scene units.
     sureness : float
         Of the object's depth, in [0, 1] (`rate_sureness`).
+    roundness : float
+        How far the object has no hollows but those that its masks show, in [0, 1] (`rate_roundness`).
     views : mapping of str to View
     trust : mapping of str to (H, W) float32
         In [0, 1] (`trust_depth`, `believe_mirrored`).
@@ -40,6 +52,7 @@ class ConfirmedDepth:
     fused: SoftMaximum
     clip_distance: float
     sureness: float
+    roundness: float
     views: Mapping[str, View]
     trust: Mapping[str, np.ndarray]
     read: Callable[[str], np.ndarray]
@@ -51,6 +64,7 @@ def confirm_depth(
     read: Callable[[str], KeyframeDepth],
     start: Callable[[float], tuple[SoftMaximum, float]],
     support: Support,
+    inside: HullInside,
     trust: TrustRule,
     adopt: AdoptRule,
     *,
@@ -72,6 +86,8 @@ def confirm_depth(
         depth.
     support : Support
         Where the object stands.
+    inside : HullInside
+        Of the hull of the masks.
     trust : TrustRule
     adopt : AdoptRule
     track : callable
@@ -80,18 +96,20 @@ def confirm_depth(
         Cores used; the result does not depend on it.
     """
     first = dict(
-        zip(views, map_ahead(lambda name: _lend(read(name), trust, adopt), views, threads=threads), strict=True)
+        zip(views, map_ahead(lambda name: _lend(read(name), inside, trust, adopt), views, threads=threads), strict=True)
     )
-    own = {name: trusted for name, (trusted, _, _) in first.items()}
-    lent = {name: held for name, (_, _, held) in first.items()}
-    sureness = rate_sureness(own.values(), (mask for _, mask, _ in first.values()), trust)
+    own = {name: trusted for name, (trusted, *_) in first.items()}
+    lent = {name: held for name, (_, _, held, _) in first.items()}
+    sureness = rate_sureness(own.values(), (mask for _, mask, *_ in first.values()), trust)
+    agreed, deep = np.sum([counts for *_, counts in first.values()], axis=0)
+    roundness = rate_roundness(agreed, deep, sureness, trust)
 
     def adopt_of(name: str) -> tuple[np.ndarray, np.ndarray]:
         found = read(name)
         others = (held for other, held in lent.items() if other != name)
         matched = _match(found, sureness, trust)
         depth = adopt_depth(found, matched, others, adopt)
-        return depth, trust_depth(found.agree, found.confidence, matched, trust)
+        return depth, trust_depth(found.agree, found.confidence, matched, trust, 1 - roundness)
 
     adopted: dict[str, np.ndarray] = {}
     for name, (depth, trusted) in zip(views, map_ahead(adopt_of, views, threads=threads), strict=True):
@@ -110,13 +128,21 @@ def confirm_depth(
         return found.view, depth, believed * share, None, free * share
 
     fused.add_all(vote_of(name) for name in track(views))
-    return ConfirmedDepth(fused, clip_distance, sureness, views, final, adopted.__getitem__, threads)
+    return ConfirmedDepth(fused, clip_distance, sureness, roundness, views, final, adopted.__getitem__, threads)
 
 
-def _lend(found: KeyframeDepth, trust: TrustRule, adopt: AdoptRule) -> tuple[np.ndarray, np.ndarray, LentDepth]:
-    """Return the trust in a depth map as of a bare object, where the object is, and what the map lends."""
+def _lend(
+    found: KeyframeDepth, inside: HullInside, trust: TrustRule, adopt: AdoptRule
+) -> tuple[np.ndarray, np.ndarray, LentDepth, tuple[int, int]]:
+    """Return the trust in a depth map as of a bare object, where the object is, what the map lends, and two counts.
+
+    They are of the object's pixels whose depth lies well inside the hull: those that enough views agree on, and all.
+    """
     own = trust_depth(found.agree, found.confidence, _match(found, 0.0, trust), trust)
-    return own, found.mask, lend_depth(found, adopt)
+    shown = found.mask & np.isfinite(found.depth)
+    deep = inside.holds(backproject_map(found.view, found.depth)[shown])
+    agreed = found.agree[shown][deep] >= trust.hollow_agree
+    return own, found.mask, lend_depth(found, adopt), (int(agreed.sum()), len(agreed))
 
 
 def _match(found: KeyframeDepth, sureness: float, trust: TrustRule) -> np.ndarray:

@@ -79,7 +79,17 @@ def shape_surface(
     )
     bound = release_bound(bound, height, depth, masks, views, held_share=rule.held_share, held_height=rule.held_height)
     sdf = complete_depth(
-        depth.fused, hull, bound, filler, sureness, height > 0, masks, views, rule.complete, depth.threads
+        depth.fused,
+        hull,
+        bound,
+        filler,
+        sureness,
+        depth.roundness,
+        height > 0,
+        masks,
+        views,
+        rule.complete,
+        depth.threads,
     )
     sdf = close_pits(sdf, rule.closing * (1 - sureness))
     sdf = fill_unseen(sdf, filler, height > 0, plane.normal, depth, rule.free_share)

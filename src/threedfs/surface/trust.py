@@ -10,7 +10,7 @@ from scipy.ndimage import gaussian_filter
 
 from threedfs.ramp import rise
 
-_BARE, _SURE = 0.2, 0.6
+_BARE, SURE = 0.2, 0.6
 """Sureness up to which space is no freer than its depth is trusted, and from which depth says all it can of it."""
 
 
@@ -38,6 +38,9 @@ class TrustRule:
     aslant_from: float
     aslant_full: float
     mirrored_height: float
+    hollow_agree: float
+    round_full: float
+    round_from: float
 
 
 def share_matched(
@@ -66,7 +69,9 @@ def share_matched(
     return matched / np.maximum(gaussian_filter(inside, reach), 1e-3)
 
 
-def trust_depth(agree: np.ndarray, confidence: np.ndarray, matched: np.ndarray, rule: TrustRule) -> np.ndarray:
+def trust_depth(
+    agree: np.ndarray, confidence: np.ndarray, matched: np.ndarray, rule: TrustRule, hollows: float = 1.0
+) -> np.ndarray:
     """Return the trust in a depth map, (H, W) float32 in [0, 1], by what other views and photographs say of it.
 
     Not in the paper. Depth is trusted that many views have found too; or, as few views see into a hollow, that none
@@ -82,9 +87,12 @@ def trust_depth(agree: np.ndarray, confidence: np.ndarray, matched: np.ndarray, 
     matched : (H, W) float64
         Share of matches around (`share_matched`).
     rule : TrustRule
+    hollows : float
+        How far depth is trusted that few views see, in [0, 1] (1 less `rate_roundness`).
     """
     seen = rise(agree.astype(np.float64), rule.agree_from, rule.agree_full)
-    return np.maximum(seen, rise(matched, rule.matched_from, rule.matched_full) * confidence).astype(np.float32)
+    hidden = hollows * rise(matched, rule.matched_from, rule.matched_full) * confidence
+    return np.maximum(seen, hidden).astype(np.float32)
 
 
 def trust_aslant(trust: np.ndarray, agree: np.ndarray, cosine: np.ndarray, rule: TrustRule) -> np.ndarray:
@@ -135,7 +143,7 @@ def trust_free(
     """
     times = 1 + (rule.free_textured - 1) * rise(matched, rule.textured_from, rule.textured_full)
     free = (too_far < times * rule.free_contradicted * keyframes) * rise(matched, rule.free_from, rule.free_full)
-    return np.maximum(trust, rise(sureness, _BARE, _SURE) * free).astype(np.float32)
+    return np.maximum(trust, rise(sureness, _BARE, SURE) * free).astype(np.float32)
 
 
 def rate_sureness(trust: Iterable[np.ndarray], masks: Iterable[np.ndarray], rule: TrustRule) -> float:
@@ -153,3 +161,22 @@ def rate_sureness(trust: Iterable[np.ndarray], masks: Iterable[np.ndarray], rule
     """
     means = [own[mask].mean(dtype=np.float64) for own, mask in zip(trust, masks, strict=True) if mask.any()]
     return float(rise(np.mean(means), rule.sure_from, rule.sure_full))
+
+
+def rate_roundness(agreed: int, deep: int, sureness: float, rule: TrustRule) -> float:
+    """Return how far an object may be taken to have no hollows but those that its masks show, in [0, 1].
+
+    Not in the paper. On a bare or glossy thing depth lies in front of the surface and behind it. Where there is a
+    hollow, some of the views that look into it have the same depth there; inside of a helmet or a vase, hardly any. An
+    object whose depth is sure tells its own hollows.
+
+    Parameters
+    ----------
+    agreed, deep : int
+        Pixels of all keyframes whose depth lies well inside the hull of the masks, those that `hollow_agree` views
+        agree on and all.
+    sureness : float
+        Of the object's depth, in [0, 1] (`rate_sureness`).
+    rule : TrustRule
+    """
+    return float((1 - sureness) * (1 - rise(agreed / max(deep, 1), rule.round_full, rule.round_from)))
