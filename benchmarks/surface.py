@@ -99,7 +99,7 @@ def work(kind: str, longest: int, keyframes: int, masks: int) -> None:
             every, tolerances = np.ones(grid.shape, bool), (0.2, 0.15, 0.2)
             measure_hull(shown, frames, whole, grid, every, ramp=CLIP, tolerances=tolerances)
         else:
-            confirmed = ConfirmedDepth(fuse(grid), CLIP * grid.spacing, 0.5, views, trust, depth.__getitem__)
+            confirmed = ConfirmedDepth(fuse(grid), CLIP * grid.spacing, 0.5, 0.0, views, trust, depth.__getitem__)
             surface = shape_surface(confirmed, TABLE, shown, frames, whole, shaping)
             assert surface is not None
 

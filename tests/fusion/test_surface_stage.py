@@ -222,7 +222,9 @@ def test_the_same_bytes_twice(pitted):
     ids=str,
 )
 def test_every_parameter_acts(pitted, change):
-    assert work(pitted, **change)[1][0] != work(pitted)[1][0]
+    """Contract: of an object that is not round, or the hull alone would shape it."""
+    base = {"round_full": 0.0, "round_from": 0.001}
+    assert work(pitted, **(base | change))[1][0] != work(pitted, **base)[1][0]
 
 
 @pytest.mark.parametrize("change", [{"free_textured": 1.0}, {"textured_from": 0.85}, {"textured_full": 0.55}], ids=str)
@@ -231,6 +233,24 @@ def test_what_textured_things_are_believed_acts(table, tmp_path, change):
     write_scene(tmp_path, table, pit=True, contradicted=4)
     base = {"free_textured": 4.0, "textured_from": 0.5, "textured_full": 0.9, "matched_reach": 0.3, "sure_full": 0.3}
     assert work(tmp_path, **(base | change))[1][0] != work(tmp_path, **base)[1][0]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"hollow_depth": 0.5},
+        {"hollow_agree": 1.0, "round_from": 0.2},
+        {"round_full": 0.9, "round_from": 1.0},
+        {"round_from": 0.9},
+        {"round_trust": 0.2},
+    ],
+    ids=str,
+)
+def test_what_tells_of_hollows_acts(pitted, change):
+    """Contract: a bare object whose depth, hardly agreed on, lies deep inside of its outline."""
+    base = {"sure_from": 0.98, "sure_full": 0.99, "matched_reach": 0.3, "hollow_agree": 2.0, "round_full": 0.1}
+    base |= {"round_from": 0.7, "hollow_depth": 0.05, "round_trust": 1.0, "frames": 0}
+    assert work(pitted, **(base | change))[1][0] != work(pitted, **base)[1][0]
 
 
 @pytest.fixture(scope="module")

@@ -10,6 +10,7 @@ from test_trust import RULE as TRUST
 
 from threedfs.fusion.softmax import SoftMaximum
 from threedfs.geometry.projection import backproject_map
+from threedfs.hull.inside import HullInside
 from threedfs.locate.mirrored import believe_mirrored, find_mirrored
 from threedfs.object.extract import extract_surface
 from threedfs.surface.confirmed import confirm_depth
@@ -101,7 +102,8 @@ def confirm(share, agree=8, rule=BARE):
     def start(_):
         return SoftMaximum(GRID, 4 * GRID.spacing, 10.0, distrust=40.0, discontinuity=0.1), 4 * GRID.spacing
 
-    return confirm_depth(VIEWS, read, start, SUPPORT, replace(rule, mirrored_height=share), ADOPT)
+    inside = HullInside(GRID, make_slab() < 0)
+    return confirm_depth(VIEWS, read, start, SUPPORT, inside, replace(rule, mirrored_height=share), ADOPT)
 
 
 @pytest.mark.parametrize(("rule", "trust"), [((2.0, 3.0), 0.0), ((0.5, 1.5), 0.5), ((0.0, 0.5), 1.0)])

@@ -3,7 +3,15 @@
 import numpy as np
 import pytest
 
-from threedfs.surface.trust import TrustRule, rate_sureness, share_matched, trust_aslant, trust_depth, trust_free
+from threedfs.surface.trust import (
+    TrustRule,
+    rate_roundness,
+    rate_sureness,
+    share_matched,
+    trust_aslant,
+    trust_depth,
+    trust_free,
+)
 
 RULE = TrustRule(
     agree_from=2.0,
@@ -26,6 +34,9 @@ RULE = TrustRule(
     aslant_from=0.3,
     aslant_full=0.7,
     mirrored_height=0.05,
+    hollow_agree=5.0,
+    round_full=0.05,
+    round_from=0.1,
 )
 SHAPE = (40, 60)
 INSIDE = np.ones(SHAPE, bool)
@@ -112,3 +123,26 @@ def test_space_is_no_freer_than_depth_is_trusted_on_bare_faces_and_objects(suren
     own, none = np.float32([0.0, 0.7]), np.zeros(2, np.uint8)
     free = trust_free(own, none, np.full(2, matched), 20, sureness, RULE)
     np.testing.assert_allclose(free, np.maximum(own, np.float32(believed)), atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("agreed", "deep", "sureness", "roundness"),
+    [
+        (0, 100, 0.0, 1.0),
+        (5, 100, 0.0, 1.0),
+        (8, 100, 0.0, 0.4),
+        (10, 100, 0.0, 0.0),
+        (0, 100, 0.7, 0.3),
+        (0, 0, 0.0, 1.0),
+    ],
+)
+def test_a_bare_object_is_round_where_views_agree_on_hardly_any_depth_inside(agreed, deep, sureness, roundness):
+    """Exact: between the two shares in proportion; the surer the depth, the less."""
+    assert rate_roundness(agreed, deep, sureness, RULE) == pytest.approx(roundness)
+
+
+@pytest.mark.parametrize(("agree", "trust"), [(0, 0.25), (3, 1 / 3), (9, 1.0)])
+def test_what_few_views_see_of_a_round_object_is_trusted_less(agree, trust):
+    """Exact: what no view contradicts counts a quarter, what views agree on as ever."""
+    counts, full = np.full(SHAPE, agree, np.uint8), np.ones(SHAPE)
+    np.testing.assert_allclose(trust_depth(counts, full, full, RULE, hollows=0.25), trust, rtol=1e-6)
