@@ -26,7 +26,7 @@ def test_points_deeper_than_asked_lie_there(scene, depth, voxels, held):  # noqa
     assert (inside.holds(points_at(RADIUS - voxels * GRID.spacing)) == held).mean() > 0.97
 
 
-def test_nothing_lies_there_outside_of_the_grid_or_under_the_plane(scene):  # noqa: F811
+def test_nothing_lies_there_outside_of_the_grid_or_well_under_the_plane(scene):  # noqa: F811
     views, masks, valid = scene
     inside = find_inside(masks, views, valid, GRID, THROUGH, depth=4.0, tolerance=0.0)
     assert not inside.holds(np.array([[9.0, 0, 0], [0, 0, -0.7]])).any()
@@ -34,9 +34,15 @@ def test_nothing_lies_there_outside_of_the_grid_or_under_the_plane(scene):  # no
     assert inside.holds(np.zeros((0, 3))).shape == (0,)
 
 
-def test_one_wrong_mask_of_twelve_changes_nothing_with_a_tolerance(scene):  # noqa: F811
+def test_a_tolerance_bears_one_wrong_mask_of_twelve(scene):  # noqa: F811
+    """Property: what it leaves is that of right masks, but for a tenth; without one a third of it is lost."""
     views, masks, valid = scene
     wrong = masks | {"03": np.roll(masks["03"], 30, axis=1)}
-    exact = find_inside(masks, views, valid, GRID, BELOW, depth=4.0, tolerance=0.1).deep
-    kept = find_inside(wrong, views, valid, GRID, BELOW, depth=4.0, tolerance=0.1).deep
-    assert (exact & kept).sum() / exact.sum() > 0.9
+    left = []
+    for tolerance in (0.1, 0.0):
+        exact, found = (
+            find_inside(shown, views, valid, GRID, BELOW, depth=4.0, tolerance=tolerance).deep
+            for shown in (masks, wrong)
+        )
+        left.append((exact & found).sum() / (exact | found).sum())
+    assert left[0] > 0.9 > 0.67 > left[1]

@@ -7,7 +7,7 @@ import pytest
 from test_mirrored import MIRRORS, SUPPORT, see_mirror
 from test_trust import RULE
 
-from threedfs.surface.floor import find_floor
+from threedfs.surface.floor import find_floor, may_tell_floor
 from threedfs.surface.keyframe_depth import KeyframeDepth
 
 
@@ -20,19 +20,26 @@ def look(agree=0, length=50.0, within=None):
     return KeyframeDepth(MIRRORS, mask, length, depth, rates, counts, 0 * counts, rates), side
 
 
-def test_depth_in_the_plane_that_few_views_agree_on_is_floor():
-    """Exact, but for the rounded corners of a square that is as wide as the least place."""
-    found, side = look()
-    floor = find_floor(found, SUPPORT, 1.0, RULE)
-    assert not (floor & ~side).any() or (floor & found.mask & ~side).mean() < 0.002
+def find(found):
+    return find_floor(found, found.mask, SUPPORT, RULE)
+
+
+@pytest.mark.parametrize("agree", [0, 2])
+def test_depth_in_the_plane_that_few_views_agree_on_is_floor(agree):
+    """Exact: nothing else is, and of the side only what is narrower than the least place is not."""
+    found, side = look(agree)
+    floor = find(found)
+    assert not (floor & ~side).any()
     assert (floor & side).sum() > 0.9 * side.sum()
 
 
-@pytest.mark.parametrize(("agree", "sureness"), [(3, 1.0), (0, 0.59), (0, 0.0)])
-def test_what_views_agree_on_or_a_bare_object_shows_is_not(agree, sureness):
-    found, side = look(agree)
-    floor = find_floor(found, SUPPORT, sureness, RULE)
-    assert not floor[side].any()
+def test_what_views_agree_on_is_not():
+    found, _ = look(3)
+    assert not find(found).any()
+
+
+def test_only_an_object_whose_depth_is_sure_tells():
+    assert may_tell_floor(1.0) and may_tell_floor(0.6) and not may_tell_floor(0.59)
 
 
 def test_a_narrow_rim_is_not():
@@ -40,5 +47,17 @@ def test_a_narrow_rim_is_not():
     _, side = look()
     rim = side & (np.indices(side.shape)[1] % 12 < 3)
     narrow, _ = look(length=300.0, within=rim)
-    assert not find_floor(narrow, SUPPORT, 1.0, RULE)[side].any()
-    assert find_floor(replace(narrow, length=50.0), SUPPORT, 1.0, RULE)[side].any()
+    assert not find(narrow).any()
+    assert find(replace(narrow, length=50.0)).any()
+
+
+def test_a_mask_that_would_be_floor_for_the_most_part_stays():
+    """Exact: a mask of which the side is more than a half."""
+    found, side = look()
+    assert not find_floor(found, side, SUPPORT, RULE).any()
+    assert find_floor(found, found.mask, SUPPORT, RULE).any()
+
+
+def test_no_depth_tells_nothing():
+    found, _ = look()
+    assert not find(replace(found, depth=np.full_like(found.depth, np.nan))).any()

@@ -115,6 +115,16 @@ def test_trust_in_it_falls_once_however_many_agree(rule, trust):
     np.testing.assert_allclose(found.trust[MIRRORS.name][mirrored], trust, atol=1e-6)
 
 
+def test_a_round_object_is_told_by_what_few_views_agree_on():
+    """Contract: of depth inside the slab that two views agree on, all counts or none."""
+    rule = replace(BARE, agree_from=0.0, agree_full=100.0, matched_from=0.0, matched_full=0.0)
+    alone, agreed = confirm(0.0, 2, rule), confirm(0.0, 2, replace(rule, hollow_agree=2.0))
+    assert alone.roundness == 1.0 and agreed.roundness == 0.0
+    _, mask, _ = see_mirror(MIRRORS)
+    np.testing.assert_allclose(alone.trust[MIRRORS.name][mask].max(), 0.02, rtol=1e-5)
+    np.testing.assert_allclose(agreed.trust[MIRRORS.name][mask].max(), 1.0, rtol=1e-5)
+
+
 def fuse(share):
     """Return the field, (nx, ny, nz) float32, that all views of the mirror make with the hull of the masks."""
     return confirm(share).fused.result_with([(make_slab(), 0.5)])

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from threedfs.geometry.grid import voxel_from_world
+from threedfs.geometry.grid import voxel_index
 from threedfs.hull.distance import measure_hull
 from threedfs.hull.grid import may_be_hull
 from threedfs.locate.height import height_above
@@ -22,6 +22,7 @@ class HullInside:
     ----------
     grid : VoxelGrid
     deep : (nx, ny, nz) bool
+        Those at least so deep inside.
     """
 
     grid: VoxelGrid
@@ -29,10 +30,9 @@ class HullInside:
 
     def holds(self, points: np.ndarray) -> np.ndarray:
         """Say which world points (N, 3) lie there, (N,) bool; those outside of the grid do not."""
-        index = np.rint(voxel_from_world(self.grid, points)).astype(np.int64)
-        kept = ((index >= 0) & (index < self.grid.shape)).all(axis=1)
+        index, kept = voxel_index(self.grid, points)
         found = np.zeros(len(points), bool)
-        found[kept] = self.deep[tuple(index[kept].T)]
+        found[kept] = self.deep[tuple(index.T)]
         return found
 
 
@@ -47,7 +47,7 @@ def find_inside(
     tolerance: float,
     threads: int = 1,
 ) -> HullInside:
-    """Return what lies deeper inside the hull of masks than a distance.
+    """Return what lies at least so deep inside the hull of masks.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ def find_inside(
         As `measure_hull` takes them.
     grid : VoxelGrid
     plane : Plane
-        The support plane; the hull goes on below it.
+        The support plane; it bounds nothing, and the hull goes on for two voxels below it.
     depth : float
         Voxels.
     tolerance : float

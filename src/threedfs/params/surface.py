@@ -43,7 +43,8 @@ class SurfaceParams(SmoothingSettings):
     mirrored_height: float = parameter(
         0.07,
         "height over the support plane up to which depth in the masks is taken for the plane's mirror image in an "
-        "upright face, and believed as far as the object's depth is sure; at 0 only what lies under the plane is",
+        "upright face, and believed as far as the object's depth is sure; on a sure one it is floor where few views "
+        "agree; at 0 only what lies under the plane is either",
         unit="height of the object",
         minimum=0.0,
         maximum=1.0,
@@ -71,7 +72,8 @@ class SurfaceParams(SmoothingSettings):
     )
     matched_full: float = parameter(
         0.4,
-        "share of matched pixels around one from which depth that no view contradicts is trusted fully",
+        "share of matched pixels around one from which depth that no view contradicts is trusted fully, but of a "
+        "round object",
         minimum=0.0,
         maximum=1.0,
     )
@@ -146,27 +148,28 @@ class SurfaceParams(SmoothingSettings):
     )
     hull_trust: float = parameter(
         0.45,
-        "trust that the hull of the masks counts as much as, against depth, on a bare object",
+        "trust that the hull of the masks counts as much as, against depth, on a bare object that is not round",
         minimum=0.0,
         maximum=1.0,
     )
     sure_hull_trust: float = parameter(0.3, "the same on an object whose depth is sure", minimum=0.0, maximum=1.0)
     hollow_depth: float = parameter(
         0.02,
-        "depth inside the hull of the keyframes' masks from which depth tells of a hollow",
+        "distance inside the hull of the keyframes' masks from which a pixel's depth tells of a hollow",
         unit="longest side of the grid",
         exclusive_minimum=0.0,
         maximum=1.0,
     )
-    hollow_agree: float = parameter(5.0, "views that must agree on such depth", minimum=1.0)
+    hollow_agree: float = parameter(5.0, "other views that must agree with such a depth", minimum=1.0)
     round_full: float = parameter(
         0.05,
-        "share of such depth that so many agree on, up to which a bare object has no hollows but those that its masks "
-        "show: the hull counts as round_trust, and depth that few views see not at all",
+        "share of such pixels that so many views agree with, up to which a bare object is round: its hull counts as "
+        "round_trust, and depth that only few views see not at all",
         minimum=0.0,
+        maximum=1.0,
     )
     round_from: float = parameter(
-        0.1, "share of such depth from which it may have some, and is not round", exclusive_minimum=0.0
+        0.1, "share of such pixels from which it is not; with round_full 0, too, none ever is", minimum=0.0, maximum=1.0
     )
     round_trust: float = parameter(0.7, "hull_trust of a round object", minimum=0.0, maximum=1.0)
     sure_clip_share: float = parameter(

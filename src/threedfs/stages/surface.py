@@ -35,7 +35,7 @@ from threedfs.segment.refine import RefineRule
 from threedfs.surface.adopt import AdoptRule
 from threedfs.surface.complete import HullRule
 from threedfs.surface.confirmed import confirm_depth
-from threedfs.surface.floor import find_floor
+from threedfs.surface.floor import find_floor, may_tell_floor
 from threedfs.surface.keyframe_depth import KeyframeDepth
 from threedfs.surface.shape import ShapeRule, shape_surface
 from threedfs.surface.trust import TrustRule
@@ -154,14 +154,16 @@ def run(
     )
 
     def outline(mesh, within, ramp):
-        """Return the masks of frames, cut within reach of a mesh's own outline; keyframes know the floor."""
+        """Return the masks of frames, cut within reach of a mesh's own outline; those of keyframes without floor."""
 
         def cut_out(name):
             view = within[name]
             reach = pixels_at(place.box, view, ramp * voxel)
             own = draw_silhouette(mesh, view)
             mask = mask_frame(view, images.image(name), valid[name], own, reach, learnt, refine)
-            return mask & ~find_floor(read(name), place, confirmed.sureness, trusted_as) if name in views else mask
+            if name in views and may_tell_floor(confirmed.sureness):
+                mask &= ~find_floor(read(name), mask, place, trusted_as)
+            return mask
 
         found = job.progress.track(map_ahead(cut_out, within, threads=job.threads), "frame", len(within))
         return dict(zip(within, found, strict=True))

@@ -10,7 +10,7 @@ from scipy.ndimage import gaussian_filter
 
 from threedfs.ramp import rise
 
-_BARE, SURE = 0.2, 0.6
+_BARE, _SURE = 0.2, 0.6
 """Sureness up to which space is no freer than its depth is trusted, and from which depth says all it can of it."""
 
 
@@ -143,7 +143,7 @@ def trust_free(
     """
     times = 1 + (rule.free_textured - 1) * rise(matched, rule.textured_from, rule.textured_full)
     free = (too_far < times * rule.free_contradicted * keyframes) * rise(matched, rule.free_from, rule.free_full)
-    return np.maximum(trust, rise(sureness, _BARE, SURE) * free).astype(np.float32)
+    return np.maximum(trust, rise(sureness, _BARE, _SURE) * free).astype(np.float32)
 
 
 def rate_sureness(trust: Iterable[np.ndarray], masks: Iterable[np.ndarray], rule: TrustRule) -> float:
@@ -167,8 +167,9 @@ def rate_roundness(agreed: int, deep: int, sureness: float, rule: TrustRule) -> 
     """Return how far an object may be taken to have no hollows but those that its masks show, in [0, 1].
 
     Not in the paper. On a bare or glossy thing depth lies in front of the surface and behind it. Where there is a
-    hollow, some of the views that look into it have the same depth there; inside of a helmet or a vase, hardly any. An
-    object whose depth is sure tells its own hollows.
+    hollow, some of the views that look into it have the same depth there; behind the smooth face of a helmet or a vase
+    hardly any have. An object whose depth is sure shows its own hollows. Where no depth lies that deep, none tells of
+    a hollow. Mirror images of the support plane count as any depth.
 
     Parameters
     ----------
