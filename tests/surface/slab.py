@@ -36,10 +36,10 @@ def see_depth(mesh, view):
     return np.where(np.isfinite(hits.distance), hits.distance, np.nan).reshape(CAMERA.shape)
 
 
-def confirm(field, sureness=0.0, trust=1.0, farther=0.0, roundness=0.0):
+def confirm(field, sureness=0.0, trust=1.0, farther=0.0):
     """Return the depth that all views have of a solid, moved away from them by `farther`."""
     mesh = extract_surface(field, GRID)
     maps = {name: see_depth(mesh, view) + farther for name, view in VIEWS.items()}
     trusted = {name: np.full(CAMERA.shape, trust, np.float32) for name in VIEWS}
     votes = SoftMaximum(GRID, 4 * GRID.spacing, 10.0, distrust=5.0, discontinuity=0.1)
-    return ConfirmedDepth(votes, 4 * GRID.spacing, sureness, roundness, VIEWS, trusted, maps.__getitem__)
+    return ConfirmedDepth(votes, 4 * GRID.spacing, sureness, 0.0, VIEWS, trusted, maps.__getitem__)

@@ -26,8 +26,13 @@ def find_mirrored(view: View, mask: np.ndarray, depth: np.ndarray, support: Supp
     share : float
         Of the object's height over the plane, up to which depth counts as in the plane.
     """
+    return mask & find_low(view, depth, support, share)
+
+
+def find_low(view: View, depth: np.ndarray, support: Support, share: float) -> np.ndarray:
+    """Return where depth lies in the support plane or under it, (H, W) bool; parameters as of `find_mirrored`."""
     tall = support.box.high[2] + support.box.low[2] + 2 * support.plane.offset
-    return mask & (support.plane.distance(backproject_map(view, depth)) < share * tall)
+    return support.plane.distance(backproject_map(view, depth)) < share * tall
 
 
 def believe_mirrored(mirrored: np.ndarray, sureness: float) -> np.ndarray:

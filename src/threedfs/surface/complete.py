@@ -47,10 +47,9 @@ def complete_depth(
 ) -> np.ndarray:
     """Return the field (nx, ny, nz) float32 in [-1, 1] that agrees with depth and masks, negative inside the object.
 
-    Not in the paper. The hull votes everywhere, the less, the surer the object's depth is, and the
-    more, the rounder it is. Where masks then show more
-    than is solid, it votes once more, there as much as depth that is trusted fully; and what is missing still is the
-    hull's.
+    Not in the paper. The hull votes everywhere, the less, the surer the object's depth is, and the more, the rounder
+    the object. Where masks then show more than is solid, it votes once more, there as much as depth that is trusted
+    fully; and what is missing still is the hull's.
 
     Parameters
     ----------

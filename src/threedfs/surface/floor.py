@@ -5,7 +5,7 @@ from __future__ import annotations
 import cv2
 import numpy as np
 
-from threedfs.locate.mirrored import find_mirrored
+from threedfs.locate.mirrored import find_low
 from threedfs.surface.keyframe_depth import KeyframeDepth
 from threedfs.surface.trust import TrustRule
 from threedfs.types import Support
@@ -40,7 +40,7 @@ def find_floor(found: KeyframeDepth, mask: np.ndarray, support: Support, rule: T
     support : Support
     rule : TrustRule
     """
-    low = find_mirrored(found.view, np.ones_like(mask), found.depth, support, rule.mirrored_height)
+    low = find_low(found.view, found.depth, support, rule.mirrored_height)
     width = 2 * max(1, round(_REACH * found.length)) + 1
     wide = cv2.morphologyEx(
         (low & (found.agree <= _FEW)).astype(np.uint8),
