@@ -12,7 +12,7 @@ from threedfs.segment.color_model import lab_image
 from threedfs.segment.energy import BACKGROUND, OBJECT, fold_given
 from threedfs.segment.outline import depth_inside
 from threedfs.segment.refine import RefineRule, color_unary, weigh_neighbours
-from threedfs.segment.table import match_table
+from threedfs.segment.table import compare_table
 from threedfs.segment.unaries import silhouette_unary, soften_silhouette
 from threedfs.types import Keyframe, View
 
@@ -65,9 +65,12 @@ def mask_frame(
     """
     if not silhouette.any():
         return np.zeros_like(silhouette)
-    inside = (np.abs(depth_inside(silhouette)) <= max(reach, 1.0)) & valid
-    lab = lab_image(image)
-    match = match_table(lab, *appearance.table.predict(view)).at(inside) if appearance.table else None
+    depth = depth_inside(silhouette)
+    inside = (np.abs(depth) <= max(reach, 1.0)) & valid
+    lab, match = lab_image(image), None
+    if appearance.table:
+        lit = rule.light_reach * np.sqrt(silhouette.sum())
+        match = compare_table(appearance.table, view, lab, valid & (depth < -reach), lit).at(inside)
     share = soften_silhouette(silhouette, reach)[inside]
     unary = color_unary(appearance.colors, lab[inside], match, rule) + rule.silhouette_weight * silhouette_unary(share)
     pairs, weight = weigh_neighbours(lab, inside, rule)

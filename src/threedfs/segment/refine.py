@@ -25,6 +25,7 @@ class RefineRule:
     silhouette_weight: float
     pair_weight: float
     contrast: float
+    light_reach: float
 
 
 def refine_mask(

@@ -10,6 +10,7 @@ import numpy as np
 from numba import njit
 
 from threedfs.segment.color_model import TableMatch, lab_image
+from threedfs.segment.light import relight_table
 from threedfs.types import Box, Plane, View
 
 _LEAST_VIEWS = 3
@@ -58,6 +59,23 @@ class TablePicture:
             for array in (self.color, self.spread, self.known.astype(np.float32), self.beneath.astype(np.float32))
         )
         return color, spread, known > 0.99, beneath > 0
+
+
+def compare_table(picture: TablePicture, view: View, lab: np.ndarray, clear: np.ndarray, reach: float) -> TableMatch:
+    """Compare an image with the support surface as it would look in it, in the light of the image.
+
+    Parameters
+    ----------
+    picture : TablePicture
+    view : View
+    lab : (H, W, 3) float32
+    clear : (H, W) bool
+        Pixels that do not show the object.
+    reach : float
+        Standard deviation of the neighbourhood over which the light is taken to be one, pixels (`relight_table`).
+    """
+    color, spread, known, beneath = picture.predict(view)
+    return match_table(lab, relight_table(lab, color, clear & known, reach), spread, known, beneath)
 
 
 def match_table(
