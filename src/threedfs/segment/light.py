@@ -9,13 +9,13 @@ from scipy.ndimage import gaussian_filter
 _LEAST_PIXELS = 100
 """Pixels that show the support surface bare, without which nothing is known of an image's light."""
 _UNLIKE = 20.0
-"""Distance in Lab from what is expected at which a pixel counts half: print a pixel off, a thing that was moved."""
+"""Distance in Lab from what is expected at which a block of pixels counts half: a thing that was moved, say."""
 _ROUNDS = 2
-"""Times that the light is estimated, each by pixels that were like the estimate before."""
+"""Times that the light is estimated, each by blocks that were like the estimate before."""
 _FEW = 0.005
 """Share of such pixels around a place below which the light is that of the whole image rather."""
 _STEPS = 4.0
-"""Steps of the coarse image in `reach`."""
+"""Blocks in `reach`."""
 
 
 def relight_table(lab: np.ndarray, color: np.ndarray, bare: np.ndarray, reach: float) -> np.ndarray:
@@ -36,29 +36,28 @@ def relight_table(lab: np.ndarray, color: np.ndarray, bare: np.ndarray, reach: f
     """
     if reach <= 0 or bare.sum() < _LEAST_PIXELS:
         return color
-    apart = lab - color
-    light = np.broadcast_to(np.median(apart[bare], axis=0), apart.shape)
-    overall = light
     block = max(1, int(reach / _STEPS))
+    share = _block_means(bare[..., None].astype(np.float32), block)
+    apart = _block_means((lab - color) * bare[..., None], block) / np.maximum(share, 1e-6)
+    overall = np.median(apart[share[..., 0] > 0], axis=0)
+    light = np.broadcast_to(overall, apart.shape)
     for _ in range(_ROUNDS):
-        weight = bare / (1 + ((apart - light) ** 2).sum(-1) / _UNLIKE**2)
-        share = _blur(weight, block, reach)
-        extra = [_blur(weight * (apart - overall)[..., channel], block, reach) for channel in range(3)]
-        coarse = np.stack(extra, axis=-1) / (share + _FEW)[..., None]
-        light = overall + _enlarge(coarse, block, bare.shape)
-    return (color + light).astype(np.float32)
+        weight = share / (1 + ((apart - light) ** 2).sum(-1, keepdims=True) / _UNLIKE**2)
+        known, extra = (_blur(item, reach / block) for item in (weight, weight * (apart - overall)))
+        light = overall + extra / (known + _FEW)
+    size = (light.shape[1] * block, light.shape[0] * block)
+    full = cv2.resize(light.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
+    return color + full[: bare.shape[0], : bare.shape[1]]
 
 
-def _blur(image: np.ndarray, block: int, reach: float) -> np.ndarray:
-    """Return the means of an image's blocks, blurred; what lies outside of the image is 0."""
-    rows, columns = image.shape
-    padded = np.pad(image, ((0, -rows % block), (0, -columns % block)))
-    means = padded.reshape(padded.shape[0] // block, block, padded.shape[1] // block, block).mean((1, 3))
-    return gaussian_filter(means, reach / block, mode="constant")
+def _block_means(image: np.ndarray, block: int) -> np.ndarray:
+    """Return the means (h, w, C) of the square blocks of an image (H, W, C), 0 outside of it."""
+    rows, columns, channels = image.shape
+    padded = np.pad(image, ((0, -rows % block), (0, -columns % block), (0, 0)))
+    across = padded.reshape(padded.shape[0], -1, block, channels).mean(2)
+    return across.reshape(-1, block, *across.shape[1:]).mean(1)
 
 
-def _enlarge(coarse: np.ndarray, block: int, shape: tuple[int, int]) -> np.ndarray:
-    """Return an image of blocks (h, w, 3) at its full shape, linear between the middles of blocks."""
-    size = (coarse.shape[1] * block, coarse.shape[0] * block)
-    full = cv2.resize(coarse.astype(np.float32), size, interpolation=cv2.INTER_LINEAR)
-    return full[: shape[0], : shape[1]]
+def _blur(image: np.ndarray, deviation: float) -> np.ndarray:
+    """Return an image (h, w, C) blurred, 0 outside of it."""
+    return gaussian_filter(image, (deviation, deviation, 0), mode="constant")
