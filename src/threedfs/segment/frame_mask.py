@@ -69,8 +69,8 @@ def mask_frame(
     inside = (np.abs(depth) <= max(reach, 1.0)) & valid
     lab, match = lab_image(image), None
     if appearance.table:
-        lit = rule.light_reach * np.sqrt(silhouette.sum())
-        match = compare_table(appearance.table, view, lab, valid & (depth < -reach), lit).at(inside)
+        clear = valid & (depth < -reach)
+        match = compare_table(appearance.table, view, lab, clear, silhouette, rule.light_reach).at(inside)
     share = soften_silhouette(silhouette, reach)[inside]
     unary = color_unary(appearance.colors, lab[inside], match, rule) + rule.silhouette_weight * silhouette_unary(share)
     pairs, weight = weigh_neighbours(lab, inside, rule)

@@ -224,9 +224,8 @@ def gather_images(
 
 def _compare(scene, name, table, outer, guess, rule):
     """Compare a keyframe with the support surface, whose light is what it shows outside of the over-estimate."""
-    reach = rule.light_reach * np.sqrt(guess.sum())
     clear = scene.valid[name] & ~outer
-    return compare_table(table, scene.views[name], lab_image(scene.images[name]), clear, reach)
+    return compare_table(table, scene.views[name], lab_image(scene.images[name]), clear, guess, rule.light_reach)
 
 
 def _link(scene, volume, name, points, rule):

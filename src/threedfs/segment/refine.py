@@ -17,7 +17,10 @@ _STEPS = ((0, 1), (1, 0), (1, 1), (1, -1))
 
 @dataclass(frozen=True)
 class RefineRule:
-    """Weights of the pixels' energy; `SegmentParams` says more of each value."""
+    """Weights of the pixels' energy; `SegmentParams` says more of each value.
+
+    `light_reach` acts in `mask_frame` alone: the evidence of keyframes holds the comparison with the support surface.
+    """
 
     color_cap: float
     color_weight: float

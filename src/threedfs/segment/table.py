@@ -61,7 +61,9 @@ class TablePicture:
         return color, spread, known > 0.99, beneath > 0
 
 
-def compare_table(picture: TablePicture, view: View, lab: np.ndarray, clear: np.ndarray, reach: float) -> TableMatch:
+def compare_table(
+    picture: TablePicture, view: View, lab: np.ndarray, clear: np.ndarray, silhouette: np.ndarray, light_reach: float
+) -> TableMatch:
     """Compare an image with the support surface as it would look in it, in the light of the image.
 
     Parameters
@@ -71,10 +73,13 @@ def compare_table(picture: TablePicture, view: View, lab: np.ndarray, clear: np.
     lab : (H, W, 3) float32
     clear : (H, W) bool
         Pixels that do not show the object.
-    reach : float
-        Standard deviation of the neighbourhood over which the light is taken to be one, pixels (`relight_table`).
+    silhouette : (H, W) bool
+        About where the object is.
+    light_reach : float
+        Standard deviation of the neighbourhood over which the light is taken to be one, roots of the silhouette's area.
     """
     color, spread, known, beneath = picture.predict(view)
+    reach = light_reach * np.sqrt(silhouette.sum())
     return match_table(lab, relight_table(lab, color, clear & known, reach), spread, known, beneath)
 
 
