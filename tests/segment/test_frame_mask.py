@@ -57,7 +57,8 @@ def test_a_table_in_another_light_is_no_object(learnt):
             start,
             REACH,
             Appearance(ColorModel(alike, alike), picture),
-            replace(RULE, light_reach=reach),
+            RULE,
+            reach,
         )
         for reach in (0.0, 0.1)
     )

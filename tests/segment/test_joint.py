@@ -75,7 +75,7 @@ def test_ball_is_found_in_images_and_voxels(ball):
 
 def test_pixels_are_nearer_to_the_truth_than_superpixels(ball):
     _, truth, images, cut = ball
-    rule = RefineRule(5.0, 1.0, 0.5, 0.0, 1.5, 8.0, 0.1)
+    rule = RefineRule(5.0, 1.0, 0.5, 0.0, 1.5, 8.0)
     finer = {name: refine_mask(images[name], own, cut.colors, None, rule) for name, own in cut.superpixels.items()}
     assert overlap(finer, truth) > max(0.96, overlap(paint(images, cut), truth))
 

@@ -102,14 +102,6 @@ class SegmentParams:
         minimum=0.0,
         maximum=5.0,
     )
-    light_reach: float = parameter(
-        0.1,
-        "an image's light is compared with that of the picture of the support surface over so wide a neighbourhood, "
-        "its standard deviation; acts with table; 0 for one light in all images",
-        unit="root of the object's area in the image",
-        minimum=0.0,
-        maximum=5.0,
-    )
     roi: str = parameter(
         "box",
         "what depth outside of which speaks for the background: the object's box, or all that the field's grid covers, "

@@ -260,6 +260,14 @@ class SurfaceParams(SmoothingSettings):
         unit="voxel of the object's grid",
         exclusive_minimum=0.0,
     )
+    light_reach: float = parameter(
+        0.1,
+        "in those masks an image's light is compared with that of the picture of the support surface over so wide a "
+        "neighbourhood, its standard deviation; 0 for one light in all images",
+        unit="root of the object's area in the image",
+        minimum=0.0,
+        maximum=5.0,
+    )
     mask_ramp: float = parameter(
         2.0,
         "the same for the masks of the keyframes, which are cut last, around the finished surface",

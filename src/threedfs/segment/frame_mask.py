@@ -43,6 +43,7 @@ def mask_frame(
     reach: float,
     appearance: Appearance,
     rule: RefineRule,
+    light_reach: float = 0.0,
 ) -> np.ndarray:
     """Return the object's mask (H, W) bool in a frame, whether or not it took part in the segmentation.
 
@@ -62,6 +63,8 @@ def mask_frame(
     appearance : Appearance
     rule : RefineRule
         Its label weight has nothing to act on.
+    light_reach : float
+        Of the neighbourhood over which the light of an image is taken to be one (`compare_table`).
     """
     if not silhouette.any():
         return np.zeros_like(silhouette)
@@ -70,7 +73,7 @@ def mask_frame(
     lab, match = lab_image(image), None
     if appearance.table:
         clear = valid & (depth < -reach)
-        match = compare_table(appearance.table, view, lab, clear, silhouette, rule.light_reach).at(inside)
+        match = compare_table(appearance.table, view, lab, clear, silhouette, light_reach).at(inside)
     share = soften_silhouette(silhouette, reach)[inside]
     unary = color_unary(appearance.colors, lab[inside], match, rule) + rule.silhouette_weight * silhouette_unary(share)
     pairs, weight = weigh_neighbours(lab, inside, rule)

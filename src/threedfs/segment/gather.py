@@ -27,7 +27,7 @@ from threedfs.segment.initialise import (
 from threedfs.segment.outline import draw_voxels
 from threedfs.segment.pairwise import link_voxels, superpixel_weights
 from threedfs.segment.superpixels import Superpixels
-from threedfs.segment.table import TablePicture, compare_table, picture_table
+from threedfs.segment.table import TablePicture, match_table, picture_table
 from threedfs.types import Box, View, VoxelGrid
 
 _SURE_LEVEL = -0.5
@@ -85,7 +85,6 @@ class GatherRule:
     silhouette_ramp: float
     table: bool
     table_reach: float
-    light_reach: float
     roi: str
     pair_weight: float
     pair_edge: str
@@ -217,15 +216,9 @@ def gather_images(
             pairs,
             weight,
             pixels_at(scene.box, view, rule.silhouette_ramp * scene.located.grid.spacing),
-            table and _compare(scene, name, table, outer[name], guess[name], rule),
+            match_table(lab_image(scene.images[name]), *table.predict(view)) if table else None,
         )
     return evidence
-
-
-def _compare(scene, name, table, outer, guess, rule):
-    """Compare a keyframe with the support surface, whose light is what it shows outside of the over-estimate."""
-    clear = scene.valid[name] & ~outer
-    return compare_table(table, scene.views[name], lab_image(scene.images[name]), clear, guess, rule.light_reach)
 
 
 def _link(scene, volume, name, points, rule):

@@ -17,10 +17,7 @@ _STEPS = ((0, 1), (1, 0), (1, 1), (1, -1))
 
 @dataclass(frozen=True)
 class RefineRule:
-    """Weights of the pixels' energy; `SegmentParams` says more of each value.
-
-    `light_reach` acts in `mask_frame` alone: the evidence of keyframes holds the comparison with the support surface.
-    """
+    """Weights of the pixels' energy; `SegmentParams` says more of each value."""
 
     color_cap: float
     color_weight: float
@@ -28,7 +25,6 @@ class RefineRule:
     silhouette_weight: float
     pair_weight: float
     contrast: float
-    light_reach: float
 
 
 def refine_mask(

@@ -160,7 +160,7 @@ def run(
             view = within[name]
             reach = pixels_at(place.box, view, ramp * voxel)
             own = draw_silhouette(mesh, view)
-            mask = mask_frame(view, images.image(name), valid[name], own, reach, learnt, refine)
+            mask = mask_frame(view, images.image(name), valid[name], own, reach, learnt, refine, params.light_reach)
             if name in views and may_tell_floor(confirmed.sureness):
                 mask &= ~find_floor(read(name), mask, place, trusted_as)
             return mask
