@@ -194,7 +194,6 @@ def test_the_same_bytes_twice(pitted):
         {"matched_full": 1.0},
         {"matched_reach": 0.3},
         {"hull_trust": 0.9},
-        {"hull_tolerance": 0.4},
         {"bound_tolerance": 0.0},
         {"gap_tolerance": 0.0},
         {"free_share": 1.0},
@@ -218,6 +217,7 @@ def test_the_same_bytes_twice(pitted):
         {"smoothing_steps": 0},
         {"smoothing_contrast": 5.0},
         {"outline_ramp": 0.25},
+        {"outline_tolerance": 0.4},
     ],
     ids=str,
 )
@@ -243,6 +243,8 @@ def test_what_textured_things_are_believed_acts(table, tmp_path, change):
         {"round_full": 0.45},
         {"round_from": 0.9},
         {"round_trust": 0.2},
+        {"round_tolerance": 0.4},
+        {"hull_tolerance": 0.4},
     ],
     ids=str,
 )

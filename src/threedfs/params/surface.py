@@ -181,6 +181,18 @@ class SurfaceParams(SmoothingSettings):
     hull_tolerance: float = parameter(
         0.05, "share of the masks that may be wrong in the hull that is weighed", minimum=0.0, maximum=1.0
     )
+    outline_tolerance: float = parameter(
+        0.035,
+        "the same of the masks that are cut around the surface so far, which are wrong less often",
+        minimum=0.0,
+        maximum=1.0,
+    )
+    round_tolerance: float = parameter(
+        0.055,
+        "the same of all masks of a round object: many have its rim in one place, and some of these are too small",
+        minimum=0.0,
+        maximum=1.0,
+    )
     bound_tolerance: float = parameter(
         0.15,
         "share of the masks that may be wrong in the hull that nothing leaves but what fills gaps",
@@ -260,17 +272,17 @@ class SurfaceParams(SmoothingSettings):
         unit="voxel of the object's grid",
         exclusive_minimum=0.0,
     )
-    light_reach: float = parameter(
-        0.1,
-        "in those masks an image's light is compared with that of the picture of the support surface over so wide a "
-        "neighbourhood, its standard deviation; 0 for one light in all images",
-        unit="root of the object's area in the image",
-        minimum=0.0,
-        maximum=5.0,
-    )
     mask_ramp: float = parameter(
         2.0,
         "the same for the masks of the keyframes, which are cut last, around the finished surface",
         unit="voxel of the object's grid",
         exclusive_minimum=0.0,
+    )
+    light_reach: float = parameter(
+        0.1,
+        "in all these masks an image's light is compared with that of the picture of the support surface over so wide "
+        "a neighbourhood, its standard deviation; 0 for one light in all images",
+        unit="root of the object's area in the image",
+        minimum=0.0,
+        maximum=5.0,
     )

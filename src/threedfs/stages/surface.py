@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -170,7 +171,8 @@ def run(
 
     if surface is not None and params.frames:
         outlines = outline(surface, frames, params.outline_ramp)
-        surface = shape_surface(confirmed, place.plane, outlines, frames, valid, shaping) or surface
+        closer = replace(shaping, hull_tolerance=params.outline_tolerance)
+        surface = shape_surface(confirmed, place.plane, outlines, frames, valid, closer) or surface
     if surface is None:
         raise UserError(
             f"{labels}: expected masks that agree on where the object is, found that no place lies inside of enough of "

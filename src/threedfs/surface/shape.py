@@ -28,6 +28,7 @@ class ShapeRule:
 
     complete: HullRule
     hull_tolerance: float
+    round_tolerance: float
     bound_tolerance: float
     held_share: float
     held_height: float
@@ -67,6 +68,7 @@ def shape_surface(
         return None
     grid, sureness = depth.fused.grid, depth.sureness
     height = height_above(plane, grid)
+    tolerance = rule.hull_tolerance + depth.roundness * (rule.round_tolerance - rule.hull_tolerance)
     hull, bound, filler = measure_hull(
         masks,
         views,
@@ -74,7 +76,7 @@ def shape_surface(
         grid,
         may_be_hull(height, grid),
         ramp=depth.clip_distance / grid.spacing,
-        tolerances=(rule.hull_tolerance, rule.bound_tolerance, rule.gap_tolerance),
+        tolerances=(tolerance, rule.bound_tolerance, rule.gap_tolerance),
         threads=depth.threads,
     )
     bound = release_bound(bound, height, depth, masks, views, held_share=rule.held_share, held_height=rule.held_height)
