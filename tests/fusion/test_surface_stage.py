@@ -217,7 +217,7 @@ def test_the_same_bytes_twice(pitted):
         {"smoothing_steps": 0},
         {"smoothing_contrast": 5.0},
         {"outline_ramp": 0.25},
-        {"outline_tolerance": 0.4},
+        {"bare_tolerance": 0.4},
     ],
     ids=str,
 )
@@ -243,7 +243,6 @@ def test_what_textured_things_are_believed_acts(table, tmp_path, change):
         {"round_full": 0.45},
         {"round_from": 0.9},
         {"round_trust": 0.2},
-        {"round_tolerance": 0.4},
         {"hull_tolerance": 0.4},
     ],
     ids=str,

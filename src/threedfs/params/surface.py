@@ -179,17 +179,12 @@ class SurfaceParams(SmoothingSettings):
         maximum=1.0,
     )
     hull_tolerance: float = parameter(
-        0.05, "share of the masks that may be wrong in the hull that is weighed", minimum=0.0, maximum=1.0
+        0.055, "share of the masks that may be wrong in the hull that is weighed", minimum=0.0, maximum=1.0
     )
-    outline_tolerance: float = parameter(
-        0.035,
-        "the same of the masks that are cut around the surface so far, which are wrong less often",
-        minimum=0.0,
-        maximum=1.0,
-    )
-    round_tolerance: float = parameter(
-        0.055,
-        "the same of all masks of a round object: many have its rim in one place, and some of these are too small",
+    bare_tolerance: float = parameter(
+        0.025,
+        "the same of the masks that are cut around the surface so far, of a bare object that is not round: the fewer, "
+        "the flatter are sides that few frames show edge-on",
         minimum=0.0,
         maximum=1.0,
     )

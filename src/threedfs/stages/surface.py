@@ -143,7 +143,8 @@ def run(
         threads=job.threads,
     )
     shaping = make_rule(ShapeRule, params, complete=make_rule(HullRule, params))
-    surface = shape_surface(confirmed, place.plane, cut.masks, views, valid, shaping)
+    by_cut = replace(shaping, bare_tolerance=params.hull_tolerance)
+    surface = shape_surface(confirmed, place.plane, cut.masks, views, valid, by_cut)
     learnt, cut_as = read_appearance(appearance), make_params(SegmentParams, segmentation)
     refine = make_rule(
         RefineRule,
@@ -171,8 +172,7 @@ def run(
 
     if surface is not None and params.frames:
         outlines = outline(surface, frames, params.outline_ramp)
-        closer = replace(shaping, hull_tolerance=params.outline_tolerance)
-        surface = shape_surface(confirmed, place.plane, outlines, frames, valid, closer) or surface
+        surface = shape_surface(confirmed, place.plane, outlines, frames, valid, shaping) or surface
     if surface is None:
         raise UserError(
             f"{labels}: expected masks that agree on where the object is, found that no place lies inside of enough of "

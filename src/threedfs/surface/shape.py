@@ -28,7 +28,7 @@ class ShapeRule:
 
     complete: HullRule
     hull_tolerance: float
-    round_tolerance: float
+    bare_tolerance: float
     bound_tolerance: float
     held_share: float
     held_height: float
@@ -68,7 +68,8 @@ def shape_surface(
         return None
     grid, sureness = depth.fused.grid, depth.sureness
     height = height_above(plane, grid)
-    tolerance = rule.hull_tolerance + depth.roundness * (rule.round_tolerance - rule.hull_tolerance)
+    known = max(sureness, depth.roundness)
+    tolerance = known * rule.hull_tolerance + (1 - known) * rule.bare_tolerance
     hull, bound, filler = measure_hull(
         masks,
         views,
