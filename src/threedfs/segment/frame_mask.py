@@ -64,7 +64,8 @@ def mask_frame(
     rule : RefineRule
         Its label weight has nothing to act on.
     light_reach : float
-        Of the neighbourhood over which the light of an image is taken to be one (`compare_table`).
+        Of the neighbourhood over which the light of an image is taken to be one (`compare_table`); 0 for one light in
+        all images.
     """
     if not silhouette.any():
         return np.zeros_like(silhouette)
