@@ -143,6 +143,7 @@ def run(
         threads=job.threads,
     )
     shaping = make_rule(ShapeRule, params, complete=make_rule(HullRule, params))
+    # Few masks, of the joint cut: each may be wrong, whatever the object is.
     by_cut = replace(shaping, bare_tolerance=params.hull_tolerance)
     surface = shape_surface(confirmed, place.plane, cut.masks, views, valid, by_cut)
     learnt, cut_as = read_appearance(appearance), make_params(SegmentParams, segmentation)

@@ -68,6 +68,7 @@ def shape_surface(
         return None
     grid, sureness = depth.fused.grid, depth.sureness
     height = height_above(plane, grid)
+    # Only what is neither sure nor round has flat sides that the hull alone must hold.
     known = max(sureness, depth.roundness)
     tolerance = known * rule.hull_tolerance + (1 - known) * rule.bare_tolerance
     hull, bound, filler = measure_hull(
