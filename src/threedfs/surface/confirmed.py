@@ -96,17 +96,16 @@ def confirm_depth(
         Cores used; the result does not depend on it.
     """
     first = dict(
-        zip(views, map_ahead(lambda name: _lend(read(name), inside, trust, adopt), views, threads=threads), strict=True)
+        zip(views, map_ahead(lambda name: _look(read(name), inside, trust, adopt), views, threads=threads), strict=True)
     )
-    own = {name: trusted for name, (trusted, *_) in first.items()}
-    lent = {name: held for name, (_, _, held, _) in first.items()}
-    sureness = rate_sureness(own.values(), (mask for _, mask, *_ in first.values()), trust)
-    agreed, deep = np.sum([counts for *_, counts in first.values()], axis=0)
+    own = {name: look.trust for name, look in first.items()}
+    sureness = rate_sureness(own.values(), (look.mask for look in first.values()), trust)
+    agreed, deep = sum(look.agreed for look in first.values()), sum(look.deep for look in first.values())
     roundness = rate_roundness(agreed, deep, sureness, trust)
 
     def adopt_of(name: str) -> tuple[np.ndarray, np.ndarray]:
         found = read(name)
-        others = (held for other, held in lent.items() if other != name)
+        others = (look.lent for other, look in first.items() if other != name)
         matched = _match(found, sureness, trust)
         depth = adopt_depth(found, matched, others, adopt)
         return depth, trust_depth(found.agree, found.confidence, matched, trust, 1 - roundness)
@@ -131,18 +130,35 @@ def confirm_depth(
     return ConfirmedDepth(fused, clip_distance, sureness, roundness, views, final, adopted.__getitem__, threads)
 
 
-def _lend(
-    found: KeyframeDepth, inside: HullInside, trust: TrustRule, adopt: AdoptRule
-) -> tuple[np.ndarray, np.ndarray, LentDepth, tuple[int, int]]:
-    """Return the trust in a depth map as of a bare object, where the object is, what the map lends, and two counts.
+@dataclass(frozen=True)
+class _FirstLook:
+    """What a depth map tells before it is known how sure the object's depth is.
 
-    They are of the object's pixels whose depth lies well inside the hull: those that enough views agree on, and all.
+    Attributes
+    ----------
+    trust : (H, W) float32
+        In it, as of a bare object (`trust_depth`).
+    mask : (H, W) bool
+        Where the object is.
+    lent : LentDepth
+        To other maps.
+    agreed, deep : int
+        Pixels of the object whose depth lies well inside the hull: those that enough views agree on, and all.
     """
+
+    trust: np.ndarray
+    mask: np.ndarray
+    lent: LentDepth
+    agreed: int
+    deep: int
+
+
+def _look(found: KeyframeDepth, inside: HullInside, trust: TrustRule, adopt: AdoptRule) -> _FirstLook:
     own = trust_depth(found.agree, found.confidence, _match(found, 0.0, trust), trust)
     shown = found.mask & np.isfinite(found.depth)
     deep = inside.holds(backproject_map(found.view, found.depth)[shown])
     agreed = found.agree[shown][deep] >= trust.hollow_agree
-    return own, found.mask, lend_depth(found, adopt), (int(agreed.sum()), len(agreed))
+    return _FirstLook(own, found.mask, lend_depth(found, adopt), int(agreed.sum()), len(agreed))
 
 
 def _match(found: KeyframeDepth, sureness: float, trust: TrustRule) -> np.ndarray:
