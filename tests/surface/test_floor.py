@@ -11,9 +11,9 @@ from threedfs.surface.floor import find_floor, may_tell_floor
 from threedfs.surface.keyframe_depth import KeyframeDepth
 
 
-def look(agree=0, length=50.0, within=None):
+def look(agree=0, length=50.0, within=None, level=0.005):
     """Return a keyframe whose mask holds floor on the slab's side, as its depth says, and where that is."""
-    depth, mask, side = see_mirror(MIRRORS, 0.005)
+    depth, mask, side = see_mirror(MIRRORS, level)
     counts, rates = np.full(depth.shape, agree, np.uint8), np.ones(depth.shape, np.float32)
     if within is not None:
         depth = np.where(side & ~within, np.nan, depth)
@@ -36,6 +36,24 @@ def test_depth_in_the_plane_that_few_views_agree_on_is_floor(agree):
 def test_what_views_agree_on_is_not():
     found, _ = look(3)
     assert not find(found).any()
+
+
+@pytest.mark.parametrize(("level", "told"), [(-0.01, True), (0.0019, True), (0.0021, False)])
+def test_in_the_plane_itself_it_is_floor_however_many_agree(level, told):
+    """Exact: up to 0.005 of the slab's height, which is 0.4."""
+    found, side = look(9, level=level)
+    floor = find(found)
+    assert not (floor & ~side).any()
+    assert (floor.sum() > 0.9 * side.sum()) == told
+
+
+def test_a_foot_that_many_see_is_not():
+    """Exact: what views agree on is floor where it is four hundredths of the object's length wide."""
+    _, side = look()
+    foot = side & (np.indices(side.shape)[1] % 12 < 6)
+    found, _ = look(9, within=foot, level=0.0)
+    assert find(found).any()
+    assert not find(replace(found, length=150.0)).any()
 
 
 def test_only_an_object_whose_depth_is_sure_tells():
@@ -61,3 +79,17 @@ def test_a_mask_that_would_be_floor_for_the_most_part_stays():
 def test_no_depth_tells_nothing():
     found, _ = look()
     assert not find(replace(found, depth=np.full_like(found.depth, np.nan))).any()
+
+
+def test_what_the_object_surrounds_is_a_mirror_image():
+    """Exact: the same place, part of a mask that goes on all around it."""
+    within = np.zeros(MIRRORS.camera.shape, bool)
+    _, side = look()
+    rows, columns = np.nonzero(side)
+    middle = int(np.median(rows)), int(np.median(columns))
+    within[middle[0] - 6 : middle[0] + 7, middle[1] - 6 : middle[1] + 7] = True
+    found, _ = look(within=within)
+    assert within[side].sum() > 100
+    assert not find(found).any()
+    beside = np.indices(within.shape)[1] < middle[1]
+    assert find_floor(found, found.mask & ~beside, SUPPORT, RULE).any()

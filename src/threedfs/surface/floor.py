@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
+from scipy import ndimage
 
 from threedfs.locate.mirrored import find_low
 from threedfs.surface.keyframe_depth import KeyframeDepth
@@ -18,6 +19,10 @@ _MOST = 0.5
 """Share of a mask from which that much floor cannot be: then depth is wrong, or the object as flat as its errors."""
 _REACH = 0.01
 """Half of the least width of such a place, lengths of the object in the image: depth bends to the floor at any rim."""
+_LEVEL = 0.005
+"""Share of the object's height up to which depth is in the plane itself, and floor, however many views agree on it."""
+_LEVEL_REACH = 0.02
+"""Half of the least width of such a place, lengths of the object in the image: what is seen of a foot is narrower."""
 
 
 def may_tell_floor(sureness: float) -> bool:
@@ -29,7 +34,8 @@ def find_floor(found: KeyframeDepth, mask: np.ndarray, support: Support, rule: T
     """Return where a mask shows the support surface instead of the object, (H, W) bool.
 
     Not in the paper. Under an object the floor is dark, and colours take it for the object. Its depth lies in the
-    support plane, but few views agree on it, as few look there.
+    support plane, but few views agree on it, as few look there. It goes on outside of the mask; what the object
+    surrounds is a mirror image in it.
 
     Parameters
     ----------
@@ -40,14 +46,28 @@ def find_floor(found: KeyframeDepth, mask: np.ndarray, support: Support, rule: T
     support : Support
     rule : TrustRule
     """
-    low = find_low(found.view, found.depth, support, rule.mirrored_height)
-    width = 2 * max(1, round(_REACH * found.length)) + 1
-    wide = cv2.morphologyEx(
-        (low & (found.agree <= _FEW)).astype(np.uint8),
+    shaded = find_low(found.view, found.depth, support, rule.mirrored_height) & (found.agree <= _FEW)
+    level = find_low(found.view, found.depth, support, _LEVEL)
+    wide = _open(shaded, _REACH * found.length) | _open(level, _LEVEL_REACH * found.length)
+    floor = _keep_touching(mask & wide, ~mask)
+    return floor if floor.sum() < _MOST * mask.sum() else np.zeros_like(mask)
+
+
+def _open(places: np.ndarray, reach: float) -> np.ndarray:
+    """Return what of places (H, W) bool is no narrower than twice `reach`, pixels."""
+    width = 2 * max(1, round(reach)) + 1
+    opened = cv2.morphologyEx(
+        places.astype(np.uint8),
         cv2.MORPH_OPEN,
         np.ones((width, width), np.uint8),
         borderType=cv2.BORDER_CONSTANT,
         borderValue=0,
     )
-    floor = mask & (wide > 0)
-    return floor if floor.sum() < _MOST * mask.sum() else np.zeros_like(mask)
+    return opened > 0
+
+
+def _keep_touching(places: np.ndarray, others: np.ndarray) -> np.ndarray:
+    """Return the pieces of `places` that touch `others`, at a corner at least, all (H, W) bool."""
+    pieces, _ = ndimage.label(places, np.ones((3, 3)))
+    beside = ndimage.binary_dilation(others, np.ones((3, 3)))
+    return places & np.isin(pieces, np.unique(pieces[beside & places]))
