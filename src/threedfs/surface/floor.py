@@ -23,6 +23,8 @@ _LEVEL = 0.005
 """Share of the object's height up to which depth is in the plane itself, and floor, however many views agree on it."""
 _LEVEL_REACH = 0.02
 """Half of the least width of such a place, lengths of the object in the image: what is seen of a foot is narrower."""
+_LEVEL_MOST = 0.1
+"""Share of a mask from which that much of it cannot be such floor: views agree on what lies beyond a lost side, too."""
 
 
 def may_tell_floor(sureness: float) -> bool:
@@ -48,8 +50,10 @@ def find_floor(found: KeyframeDepth, mask: np.ndarray, support: Support, rule: T
     """
     shaded = find_low(found.view, found.depth, support, rule.mirrored_height) & (found.agree <= _FEW)
     level = find_low(found.view, found.depth, support, _LEVEL)
-    wide = _open(shaded, _REACH * found.length) | _open(level, _LEVEL_REACH * found.length)
-    floor = _keep_touching(mask & wide, ~mask)
+    level = mask & _open(level, _LEVEL_REACH * found.length)
+    if level.sum() > _LEVEL_MOST * mask.sum():
+        level = np.zeros_like(mask)
+    floor = _keep_touching(mask & _open(shaded, _REACH * found.length) | level, ~mask)
     return floor if floor.sum() < _MOST * mask.sum() else np.zeros_like(mask)
 
 
