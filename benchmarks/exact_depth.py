@@ -11,6 +11,7 @@ Cameras stay as estimated: true depth is divided by their scale. So do the plane
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -40,10 +41,12 @@ def find_filmed_pixels(folder: Path) -> dict[str, np.ndarray]:
     }
 
 
-def replace_depth(folder: Path) -> int:
-    """Write true depth into the depth maps of the run in `folder`; return how many there are."""
+def read_true_depths(folder: Path) -> Iterator[tuple[str, np.ndarray, np.ndarray]]:
+    """Yield each keyframe of the run in `folder`: its name, `find_filmed_pixels`, and true depth (H, W) in scene units.
+
+    NaN where the renderer saw nothing.
+    """
     frames, solved = read_frames(folder / "01_frames/frames.zarr.zip"), read_poses(folder / "02_poses/poses.json")
-    crops = read_crops(folder / "04_crops/crops.zarr.zip")
     true_cameras = relate_cameras(read_given_cameras(folder / "00_render/cameras.json", None), solved.views, frames)
     places = find_filmed_pixels(folder)
     images = find_depth_images(folder / "00_render/depth", places)
@@ -52,15 +55,23 @@ def replace_depth(folder: Path) -> int:
         raise SystemExit(f"{folder}: expected true depth of all keyframes, found none of {', '.join(lacking)}.")
     for name, pixels in places.items():
         image = read_true_depth(images[name], DEPTH_SCALE, frames.source_shape, None, None)
-        truth = np.where(crops.valid_of(name), sample_nearest(image, pixels, np.nan), np.nan)
-        known = np.isfinite(truth).astype(np.float32)
+        yield name, pixels, sample_nearest(image, pixels, np.nan) / true_cameras.from_scene.scale
+
+
+def replace_depth(folder: Path) -> int:
+    """Write true depth into the depth maps of the run in `folder`; return how many there are."""
+    crops = read_crops(folder / "04_crops/crops.zarr.zip")
+    count = 0
+    for name, _, exact in read_true_depths(folder):
+        depth = np.where(crops.valid_of(name), exact, np.nan).astype(np.float32)
+        known = np.isfinite(depth).astype(np.float32)
         path = folder / f"06_depth/{name}.zarr.zip"
         header = read_arrays(path, DEPTH_MAP)[1]
-        depth = (truth / true_cameras.from_scene.scale).astype(np.float32)
         write_depth_map(path, DepthMap(depth, 0.5 * (1 - known), known), header)
         Made(folder.parent / ".made").forget(path)  # else the job's own map would be put back
+        count += 1
     (folder / "06_depth/.snakemake_timestamp").touch()  # by which Snakemake knows that a folder is new
-    return len(places)
+    return count
 
 
 def main() -> None:

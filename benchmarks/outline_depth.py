@@ -13,34 +13,20 @@ import argparse
 from pathlib import Path
 
 import numpy as np
-from exact_depth import find_filmed_pixels
+from exact_depth import read_true_depths
 
 from threedfs.evaluate.rendering import sample_nearest
-from threedfs.evaluate.true_cameras import relate_cameras
 from threedfs.io.depth_maps import read_depth_map
-from threedfs.io.frames import read_frames
-from threedfs.io.given_cameras import read_given_cameras
 from threedfs.io.images import read_mask
-from threedfs.io.poses import read_poses
-from threedfs.io.truth import read_true_depth
-from threedfs.io.truth_files import find_depth_images
-from threedfs.params.rendered import DEPTH_SCALE
 from threedfs.segment.outline import depth_inside
 
 
 def measure_outline(folder: Path, reach: float) -> np.ndarray:
     """Return the relative errors (N,) of depth in the true masks of a run, within `reach` pixels of their outlines."""
-    frames, solved = read_frames(folder / "01_frames/frames.zarr.zip"), read_poses(folder / "02_poses/poses.json")
-    cameras = relate_cameras(read_given_cameras(folder / "00_render/cameras.json", None), solved.views, frames)
-    places = find_filmed_pixels(folder)
-    images = find_depth_images(folder / "00_render/depth", places)
     errors = []
-    for name, pixels in places.items():
-        image = read_true_depth(images[name], DEPTH_SCALE, frames.source_shape, None, None)
-        truth = sample_nearest(image, pixels, np.nan)
-        mask = sample_nearest(read_mask(folder / f"00_render/masks/{name}.png"), pixels, False)
-        depth = read_depth_map(folder / f"06_depth/{name}.zarr.zip").depth * cameras.from_scene.scale
-        inside = depth_inside(mask)
+    for name, pixels, truth in read_true_depths(folder):
+        inside = depth_inside(sample_nearest(read_mask(folder / f"00_render/masks/{name}.png"), pixels, False))
+        depth = read_depth_map(folder / f"06_depth/{name}.zarr.zip").depth
         near = (inside > 0) & (inside <= reach) & np.isfinite(truth) & np.isfinite(depth)
         errors.append(np.abs(depth[near] - truth[near]) / truth[near])
     return np.concatenate(errors)

@@ -44,7 +44,7 @@ class SurfaceParams(SmoothingSettings):
         0.07,
         "height over the support plane up to which depth in the masks is taken for the plane's mirror image in an "
         "upright face, and believed as far as the object's depth is sure; on a sure one it is floor where few views "
-        "agree (in the plane itself however many do); at 0 only what lies under the plane is",
+        "agree; at 0 only what lies under the plane is either (a rim in the plane itself is floor at any value)",
         unit="height of the object",
         minimum=0.0,
         maximum=1.0,

@@ -36,8 +36,8 @@ def find_floor(found: KeyframeDepth, mask: np.ndarray, support: Support, rule: T
     """Return where a mask shows the support surface instead of the object, (H, W) bool.
 
     Not in the paper. Under an object the floor is dark, and colours take it for the object. Its depth lies in the
-    support plane, but few views agree on it, as few look there. It goes on outside of the mask; what the object
-    surrounds is a mirror image in it.
+    support plane, but few views agree on it, as few look there. Where many do, it is floor only in the plane itself,
+    and no more than a rim. Floor goes on outside of the mask; what the object surrounds is a mirror image in it.
 
     Parameters
     ----------
@@ -72,6 +72,4 @@ def _open(places: np.ndarray, reach: float) -> np.ndarray:
 
 def _keep_touching(places: np.ndarray, others: np.ndarray) -> np.ndarray:
     """Return the pieces of `places` that touch `others`, at a corner at least, all (H, W) bool."""
-    pieces, _ = ndimage.label(places, np.ones((3, 3)))
-    beside = ndimage.binary_dilation(others, np.ones((3, 3)))
-    return places & np.isin(pieces, np.unique(pieces[beside & places]))
+    return places & ndimage.binary_propagation(others, np.ones((3, 3)), mask=places | others)
