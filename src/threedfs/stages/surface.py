@@ -9,7 +9,7 @@ from typing import Any
 
 from threedfs.crops.place import measure_object
 from threedfs.errors import UserError
-from threedfs.fusion.fuse import VoteRule, limit_clip_distance, start_fusion
+from threedfs.fusion.fuse import VoteRule
 from threedfs.hull.grid import lay_grid
 from threedfs.hull.inside import find_inside
 from threedfs.io.appearance import read_appearance
@@ -40,6 +40,7 @@ from threedfs.surface.floor import find_floor, may_tell_floor
 from threedfs.surface.keyframe_depth import KeyframeDepth
 from threedfs.surface.shape import ShapeRule, shape_surface
 from threedfs.surface.trust import TrustRule
+from threedfs.surface.votes import ReachRule, start_votes
 from threedfs.texture.vertices import color_vertices, confirm_vertices, sample_vertices
 
 
@@ -92,7 +93,7 @@ def run(
     fused_as = make_params(FuseObjectParams, fusion)
     paths = {path.name.removesuffix(".zarr.zip"): path for path in depth}
     corners = place.box.corners()
-    voxel = cut.grid.spacing  # of the object's grid: settings of fuse_object count in its voxels
+    voxel = cut.grid.spacing
 
     def read(name):
         found, said = read_depth_map(paths[name]), trust.read(name)
@@ -108,17 +109,12 @@ def run(
             said.confidence,
         )
 
+    voting = make_rule(VoteRule, fused_as)
+    reaching = make_rule(ReachRule, fused_as, sure_clip_share=params.sure_clip_share)
+
     def start(sureness):
-        share = 1 - sureness * (1 - params.sure_clip_share)
-        clip = limit_clip_distance(
-            max(2.0, share * fused_as.clip_distance),
-            place.figures["thickness"],
-            share * fused_as.thickness_share,
-            voxel,
-        )
-        hidden = share * fused_as.hidden_distance * voxel
-        votes = start_fusion(grid, clip, make_rule(VoteRule, fused_as), hidden_distance=hidden, threads=job.threads)
-        return votes, clip
+        thickness = place.figures["thickness"]
+        return start_votes(grid, sureness, thickness, voxel, reaching, voting, job.threads)
 
     trusted_as = make_rule(TrustRule, params)
     inside = find_inside(
