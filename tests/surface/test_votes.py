@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+from slab import CAMERA, GRID, VIEWS, make_slab, see_depth
 
-from threedfs.fusion.fuse import VoteRule
+from threedfs.fusion.fuse import VoteRule, start_fusion
+from threedfs.object.extract import extract_surface
 from threedfs.surface.votes import ReachRule, start_votes
 from threedfs.types import VoxelGrid
 
@@ -33,3 +35,20 @@ def test_clip_distance_stays_two_voxels_where_a_share_of_it_is_less():
     reach = ReachRule(clip_distance=2.0, hidden_distance=2.0, thickness_share=0.0, sure_clip_share=0.5)
     _, clip_distance = start_votes(VoxelGrid(np.zeros(3), 0.05, (4, 4, 4)), 1.0, 9.0, 0.1, reach, VOTE)
     assert clip_distance == pytest.approx(0.2)
+
+
+def fuse(votes):
+    """Return the field of a slab that all views have seen."""
+    solid = extract_surface(make_slab(), GRID)
+    trust = np.ones(CAMERA.shape, np.float32)
+    votes.add_all((view, see_depth(solid, view), trust) for view in VIEWS.values())
+    return votes.result()[0]
+
+
+def test_what_is_hidden_is_measured_by_the_same_share():
+    """Exact: of a half-sure object the rule's distances count three quarters."""
+    reach = ReachRule(clip_distance=8.0, hidden_distance=4.0, thickness_share=0.0, sure_clip_share=0.5)
+    found = fuse(start_votes(GRID, 0.5, 9.0, GRID.spacing, reach, VOTE)[0])
+    voxel = GRID.spacing
+    np.testing.assert_array_equal(found, fuse(start_fusion(GRID, 6 * voxel, VOTE, hidden_distance=3 * voxel)))
+    assert (found != fuse(start_fusion(GRID, 6 * voxel, VOTE, hidden_distance=4 * voxel))).any()
