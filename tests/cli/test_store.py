@@ -59,11 +59,16 @@ def test_gc_lists_first_and_removes_what_no_result_needs(out, capsys):
     kernel = out / "results/.store/kernels/old/x.nbc"
     kernel.parent.mkdir(parents=True)
     kernel.write_text("of before")
+    looked, lately = (out / f"results/.store/inputs/{name}.json" for name in ("before", "lately"))
+    looked.parent.mkdir()
+    looked.write_text("{}")
+    lately.write_text("{}")
+    os.utime(looked, (1, 1))
     assert main(["store", "gc", "--out", str(out)]) == 0
     said = capsys.readouterr().out
-    assert unneeded.name in said and "kernels/old/x.nbc" in said and "3 files" in said and unneeded.exists()
+    assert unneeded.name in said and "kernels/old/x.nbc" in said and "4 files" in said and unneeded.exists()
     assert main(["store", "gc", "--out", str(out), "--delete"]) == 0
-    assert not unneeded.exists() and not kernel.exists()
+    assert not unneeded.exists() and not kernel.exists() and not looked.exists() and lately.exists()
     assert main(["store", "verify", "--out", str(out)]) == 0
     assert "2 objects, 2 records" in capsys.readouterr().out
 

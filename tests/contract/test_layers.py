@@ -84,7 +84,7 @@ def test_io_knows_no_stage_and_no_parameters(path):
 def test_geometry_stands_on_types_alone():
     for path in MODULES:
         if topic_of(name_of(path)) == "geometry":
-            allowed = ("threedfs.geometry", "threedfs.types", "threedfs.errors", "threedfs.checks")
+            allowed = ("threedfs.geometry", "threedfs.types", "threedfs.errors", "threedfs.checks", "threedfs.threads")
             assert not {n for n in imports_of(path) if n.startswith("threedfs.") and not n.startswith(allowed)}
 
 

@@ -81,10 +81,12 @@ def test_the_depth_range_holds_the_box_and_what_is_seen_behind_it():
     view = cut_view(view_from(2.0), find_window(view_from(2.0), BOX.corners(), 0.05), 0.5)
     behind = np.column_stack([np.zeros(100), np.zeros(100), np.linspace(0.0, 1.0, 100)])
     beside = np.column_stack([np.full(100, 3.0), np.zeros(100), np.full(100, 9.0)])
-    found = expect_crop_range(Keyframe(view, (), 0.1, 20.0), np.vstack([behind, beside]), BOX.corners(), 0.95, 1.2)
+    found = expect_crop_range(Keyframe(view, (), 0.1, 20.0), np.vstack([behind, beside]), BOX.corners(), 0.95, 1.2, 1.2)
     assert found.near == pytest.approx(0.95 * 1.9)
     assert found.far == pytest.approx(1.2 * 2.97, rel=1e-3)  # what lies beside is not in the crop
     assert found.within == pytest.approx((1.9, 2.1))
-    assert expect_crop_range(found, beside, BOX.corners(), 0.95, 1.2).far == pytest.approx(1.2 * 2.1)
+    assert expect_crop_range(found, beside, BOX.corners(), 0.95, 1.2, 1.2).far == pytest.approx(1.2 * 2.1)
     nearer = Keyframe(view, (), 0.1, 2.6)
-    assert expect_crop_range(nearer, behind, BOX.corners(), 0.95, 1.2).far == pytest.approx(2.6)
+    assert expect_crop_range(nearer, behind, BOX.corners(), 0.95, 1.2, 1.2).far == pytest.approx(2.6)
+    wider = Keyframe(view, (), 0.1, 2.6 * 1.5 / 1.2)  # the same points, and the far end of the frame at 1.5 of theirs
+    assert expect_crop_range(wider, behind, BOX.corners(), 0.95, 1.2, 1.5).far == pytest.approx(2.6)

@@ -97,6 +97,7 @@ def cut(folder, support=True, **changes):
         support=folder / "support.json" if support else None,
         crops=folder / "crops.zarr.zip",
         views=folder / "views.json",
+        frame_far_factor=1.2,
         params=CropsParams(**changes),
         job=JOB,
     )

@@ -15,13 +15,13 @@ from threedfs.deform.evidence import (
     measure_scatter,
     sample_gradient,
     take_points,
-    widest_gap,
 )
 from threedfs.deform.rbf import evaluate_at, evaluate_on_grid, place_basis
 from threedfs.deform.ridge import fit_ridge
 from threedfs.deform.samples import draw_anchors, draw_controls
 from threedfs.errors import UserError
 from threedfs.geometry.grid import cover_box, voxel_centres
+from threedfs.geometry.plane import widest_gap
 from threedfs.types import Box, OrientedPoints, Plane
 
 GRID = cover_box(Box(np.eye(3), np.full(3, -0.5), np.full(3, 0.5)), 50)

@@ -124,6 +124,16 @@ def test_a_folder_of_photos_is_checked_too(tmp_path, around, capsys):
     assert f"{FRAMES} photos" in capsys.readouterr().out
 
 
+def test_photos_that_cannot_be_read_count_once(tmp_path, around, capsys):
+    for index, image in enumerate(around[:9]):
+        cv2.imwrite(str(tmp_path / f"{index:02d}.png"), image)
+    for index in range(3):
+        (tmp_path / f"broken{index}.png").write_bytes(b"no picture")
+    main(["check", str(tmp_path)])
+    said = capsys.readouterr().out
+    assert "12 photos" in said and "3 of 12 cannot be decoded" in said and "photos: 9" in said
+
+
 def test_what_is_no_film_is_refused_in_a_sentence(tmp_path, capsys):
     (tmp_path / "x.mp4").write_text("no film")
     assert main(["check", str(tmp_path / "x.mp4")]) == 1

@@ -100,7 +100,7 @@ CASES = {
     ),
     "long variant": (f"methods: [gc_select]\nvariants: {{{'x' * 101}: {{}}}}", "cannot name a variant"),
     "long data set": (f"dataset: {'x' * 261}", "at most 100"),
-    "data set with a line break": ('dataset: "a\\n"', r"'a\n' cannot name"),
+    "data set with a line break": ('dataset: "a\\n"', r"'a\n' cannot name a data set"),
     "no name": ("sequences: {'': {source: config}}", "'' cannot name a sequence"),
     "parent": ("sequences: {..: {source: config}}", "'..' cannot name a sequence"),
     "deep": (f"depth: {DEEP}", "expected at most 20 levels of keys, got more"),

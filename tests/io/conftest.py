@@ -110,7 +110,6 @@ ARTIFACTS = [
             ("c",),
             (0.02, -0.001),
             Similarity(2.5, np.eye(3), np.array([1.0, 2, 3])),
-            None,
             {"turns": 1.5},
         ),
         poses.write_poses,

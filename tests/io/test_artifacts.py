@@ -92,6 +92,20 @@ def test_damaged_file_is_refused(artifact, header, tmp_path):
         artifact.read(path)
 
 
+def test_damage_that_shows_when_an_image_is_read_is_told_in_a_sentence(tmp_path, header):
+    path = tmp_path / "frames.zarr.zip"
+    image = np.random.default_rng(0).integers(0, 255, (40, 50, 3), np.uint8)
+    write_frames(path, [Frame("a", 0, 0.0, 1.0, image)], header, ordered=True, source_shape=(40, 50))
+    with zipfile.ZipFile(path) as file:
+        place = next(entry.header_offset for entry in file.infolist() if entry.filename.startswith("images/c/"))
+    damaged = bytearray(path.read_bytes())
+    damaged[place + 200] ^= 1
+    path.write_bytes(damaged)
+    frames = read_frames(path)
+    with pytest.raises(UserError, match=r"frames\.zarr\.zip: expected a whole file .*rule frames writes it"):
+        frames.image("a")
+
+
 def test_other_schema_is_refused(artifact, header, tmp_path):
     path = tmp_path / artifact.name
     if path.suffix == ".json":

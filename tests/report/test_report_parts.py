@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from threedfs.report.camera_path import draw_path, widest_gap
+from threedfs.report.camera_path import draw_path, unfilmed_angle
 from threedfs.report.findings import Facts, judge, sum_up
 from threedfs.report.index_page import Row, write_index
 from threedfs.report.page import KeyframePictures, Report, write_page
@@ -88,7 +88,7 @@ def test_what_is_not_known_is_not_judged():
 
 @pytest.mark.parametrize(("angles", "gap"), [(range(0, 360, 10), 10), ([0, 90, 180], 180), ([10], 360)])
 def test_the_widest_gap_around_the_object(angles, gap):
-    assert widest_gap(ring(angles), PLACE) == pytest.approx(gap)
+    assert unfilmed_angle(ring(angles), PLACE) == pytest.approx(gap)
 
 
 def test_the_path_shows_every_camera_and_tells_keyframes_apart():

@@ -60,14 +60,14 @@ def check_stands(path, up):
 @pytest.mark.parametrize(("name", "up"), [("ball.stl", 2), ("ball.ply", 2), ("ball.obj", 2), ("ball.GLB", 1)])
 def test_mesh_has_the_height_given_and_stands_at_zero(results, name, up):
     """Exact: z is up, and in GLB y, as its readers expect."""
-    export(results, "40", results / name)
+    export(results, 40.0, results / name)
     check_stands(results / name, up)
 
 
 @pytest.mark.parametrize(("name", "up"), [("ball.obj", 2), ("ball.glb", 1), ("my ball.OBJ", 2)])
 def test_a_texture_goes_along_where_the_format_has_one(painted, name, up):
     """Exact: the picture is the one of the run, and the mesh that which it was painted on."""
-    export(painted, "40", painted / name)
+    export(painted, 40.0, painted / name)
     check_stands(painted / name, up)
     found = trimesh.load(painted / name, force="mesh", process=False)
     material = found.visual.material
@@ -81,18 +81,18 @@ def test_a_texture_goes_along_where_the_format_has_one(painted, name, up):
 @pytest.mark.parametrize("name", ["ball.stl", "ball.ply"])
 def test_formats_without_a_texture_have_the_full_mesh_as_before(painted, name):
     """Exact: the bytes are those of a run without one."""
-    export(painted, "40", painted / name)
+    export(painted, 40.0, painted / name)
     with_texture = (painted / name).read_bytes()
     assert len(read_mesh(painted / name).faces) == 320
     shutil.rmtree(painted / "11_object/surface/textured")
-    export(painted, "40", painted / name)
+    export(painted, 40.0, painted / name)
     assert (painted / name).read_bytes() == with_texture
 
 
 def test_a_method_without_a_texture_has_its_own_mesh(painted):
     shutil.copytree(painted / "11_object/surface", painted / "11_object/poisson")
     shutil.rmtree(painted / "11_object/poisson/textured")
-    export(painted, "40", painted / "ball.glb", "poisson")
+    export(painted, 40.0, painted / "ball.glb", "poisson")
     assert trimesh.load(painted / "ball.glb", force="mesh").visual.kind != "texture"
 
 
@@ -102,11 +102,11 @@ def test_colours_of_vertices_stay(results, name):
     mesh = read_mesh(results / "11_object/surface/mesh.ply")
     colors = np.random.default_rng(0).integers(0, 256, (len(mesh.vertices), 3)).astype(np.uint8)
     write_colored_mesh(path, mesh, colors)
-    export(results, "40", results / name, "surface")
+    export(results, 40.0, results / name, "surface")
     np.testing.assert_array_equal(read_colored_mesh(results / name)[1], colors)
 
 
-@pytest.mark.parametrize("height", ["tall", "-3", "0", "nan", "inf"])
+@pytest.mark.parametrize("height", [-3.0, 0.0, float("nan"), float("inf")])
 def test_height_that_is_none_is_refused(results, height):
     with pytest.raises(UserError, match=rf"positive number.* {height}\.$"):
         export(results, height, results / "ball.stl")
@@ -114,15 +114,15 @@ def test_height_that_is_none_is_refused(results, height):
 
 def test_format_that_is_not_known_and_mesh_that_is_not_there_are_refused(results):
     with pytest.raises(UserError, match=r"ball\.dwg: expected a file that ends in"):
-        export(results, "40", results / "ball.dwg")
+        export(results, 40.0, results / "ball.dwg")
     with pytest.raises(UserError, match=r"poisson.*expected the mesh of a run, found none"):
-        export(results, "40", results / "ball.stl", "poisson")
+        export(results, 40.0, results / "ball.stl", "poisson")
     assert not list(results.glob("ball.*"))
 
 
 def test_a_textured_glb_keeps_to_the_standard(painted):
     """Exact: read without trimesh, it is the mesh and the picture; v points down in glTF."""
-    export(painted, "40", painted / "ball.glb")
+    export(painted, 40.0, painted / "ball.glb")
     (found,) = read_glb(painted / "ball.glb")
     original = read_textured_obj(painted / "11_object/surface/textured/mesh.obj")
     np.testing.assert_array_equal(found["image"], original.image)
@@ -140,7 +140,7 @@ def test_a_coloured_glb_keeps_to_the_standard(results):
     mesh = read_mesh(path)
     colors = np.random.default_rng(0).integers(0, 256, (len(mesh.vertices), 3)).astype(np.uint8)
     write_colored_mesh(path, mesh, colors)
-    export(results, "40", results / "ball.glb")
+    export(results, 40.0, results / "ball.glb")
     (found,) = read_glb(results / "ball.glb")
     np.testing.assert_array_equal(found["COLOR_0"][:, :3], colors)
     assert found["POSITION"][:, 1].min() == pytest.approx(0, abs=1e-5)
@@ -155,7 +155,7 @@ def test_a_coloured_glb_keeps_to_the_standard(results):
     ],
 )
 def test_the_reader_of_glb_finds_faults(painted, old, new, what):
-    export(painted, "40", painted / "ball.glb")
+    export(painted, 40.0, painted / "ball.glb")
     data = (painted / "ball.glb").read_bytes()
     assert old in data
     (painted / "ball.glb").write_bytes(data.replace(old, new))
@@ -164,7 +164,7 @@ def test_the_reader_of_glb_finds_faults(painted, old, new, what):
 
 
 def test_the_reader_of_glb_finds_an_index_out_of_range(painted):
-    export(painted, "40", painted / "ball.glb")
+    export(painted, 40.0, painted / "ball.glb")
     data = bytearray((painted / "ball.glb").read_bytes())
     indices = read_glb(painted / "ball.glb")[0]["indices"]
     place = data.index(indices.tobytes())
@@ -185,9 +185,9 @@ def fine(results):
 
 def test_levels_of_detail_are_closed_and_tell_their_error(fine):
     """Property: a ball of diameter 40 inside of which the flat faces lie; their sagitta is known."""
-    export(fine, "40", fine / "full.stl")
+    export(fine, 40.0, fine / "full.stl")
     full = trimesh.load(fine / "full.stl")
-    levels = export_levels(fine, "40", fine / "ball.stl", [1000, 10000])
+    levels = export_levels(fine, 40.0, fine / "ball.stl", [1000, 10000])
     assert [path.name for path in levels] == ["ball_1000.stl", "ball_10000.stl"]
     for count, (path, level) in zip((1000, 10000), levels.items(), strict=True):
         found = trimesh.load(path)
@@ -200,7 +200,7 @@ def test_levels_of_detail_are_closed_and_tell_their_error(fine):
 
 
 def test_levels_have_the_colours_of_the_mesh_and_one_has_the_name_given(fine):
-    export_levels(fine, "0.04", fine / "ball.glb", [2000])
+    export_levels(fine, 0.04, fine / "ball.glb", [2000])
     (found,) = read_glb(fine / "ball.glb")
     dark = found["COLOR_0"][:, 0] == 0
     assert 0.3 < dark.mean() < 0.7 and set(np.unique(found["COLOR_0"][:, :3])) == {0, 255}
@@ -208,8 +208,8 @@ def test_levels_have_the_colours_of_the_mesh_and_one_has_the_name_given(fine):
 
 
 def test_a_mesh_with_few_faces_stays_what_it_is(results):
-    levels = export_levels(results, "40", results / "ball.stl", [5000])
-    export(results, "40", results / "full.stl")
+    levels = export_levels(results, 40.0, results / "ball.stl", [5000])
+    export(results, 40.0, results / "full.stl")
     assert (results / "ball.stl").read_bytes() == (results / "full.stl").read_bytes()
     assert levels[results / "ball.stl"].largest_error == 0
 
@@ -219,7 +219,7 @@ def test_a_mesh_with_a_hole_has_no_levels(results):
     mesh = read_mesh(path)
     write_mesh(path, Mesh(mesh.vertices, mesh.faces[1:]))
     with pytest.raises(UserError, match="expected a closed mesh"):
-        export_levels(results, "40", results / "ball.stl", [100])
+        export_levels(results, 40.0, results / "ball.stl", [100])
     assert not list(results.glob("ball*"))
 
 

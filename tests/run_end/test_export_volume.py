@@ -12,9 +12,7 @@ import trimesh
 import zarr
 
 from threedfs.cli.main import main
-from threedfs.geometry.similarity import Similarity
 from threedfs.io.meshes import write_mesh
-from threedfs.io.poses import Poses, write_poses
 from threedfs.io.volumes import Volume, write_support, write_volume
 from threedfs.types import Box, Mesh, Plane, Support, VoxelGrid
 
@@ -97,16 +95,6 @@ def test_a_reader_of_zarr_has_the_field_where_it_is(results, tmp_path, height):
     np.testing.assert_allclose(coarser[0][0][3, 4, 5], finest[6:8, 8:10, 10:12].mean(), atol=1e-6)
     unit = zarr.open_group(path, mode="r").attrs["ome"]["multiscales"][0]["axes"][0].get("unit")
     assert unit == ("meter" if height else None)
-
-
-def test_a_size_that_given_cameras_tell_is_used(results, tmp_path):
-    folder, _ = results
-    identity = Similarity(1.0, np.eye(3), np.zeros(3))
-    write_poses(folder / "02_poses/poses.json", Poses((), (), (0.0, 0.0), identity, metres_per_unit=0.5), {})
-    assert main(["export", str(folder), str(tmp_path / "mug.zarr")]) == 0
-    check_ome_zarr(tmp_path / "mug.zarr")
-    _, scale, _ = next(levels_of(tmp_path / "mug.zarr"))
-    np.testing.assert_allclose(scale, SPACING * 0.5)
 
 
 def test_it_is_replaced_by_the_same_bytes(results, tmp_path):

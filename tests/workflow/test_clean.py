@@ -51,7 +51,7 @@ def test_what_can_be_removed_is_listed_first_and_stays(mine):
     folder, run = mine
     before = files_of(folder)
     status, output = run("clean", "mug")
-    assert status == 0 and "nothing was yet: add --yes." in output
+    assert status == 0 and "nothing has been removed yet. Add --yes" in output
     assert f"MB  {folder}/results/mug/06_depth" in output and "11_object" not in output
     assert files_of(folder) == before
 
@@ -62,7 +62,7 @@ def test_only_what_no_user_wants_is_removed(mine, words):
     before = files_of(folder)
     page = (folder / "results/mug/report.html").read_bytes()
     status, output = run("clean", *words, "--yes")
-    assert status == 0 and f"stay in {folder}/results/.store" in output, output
+    assert status == 0 and f"remain in {folder}/results/.store" in output, output
     after = files_of(folder)
     gone = before.keys() - after.keys()
     assert gone and all(before[name] == data for name, data in after.items())
@@ -129,6 +129,29 @@ def test_a_sequence_that_is_not_finished_stays(mine, capsys):
     assert main(["clean", "--all", "--yes"]) == 0
     assert "mug is not finished, and stays as it is." in capsys.readouterr().err
     assert files_of(folder) == before
+
+
+def test_a_failure_of_an_earlier_run_is_no_obstacle(mine):
+    """A job that a later run did not need left its log behind, and the report of then told of it."""
+    folder, run = mine
+    (folder / "results/mug/logs/scale.log").write_text("threedfs: scale of mug: no tag.\n")
+    report = json.loads((folder / "results/mug/report.json").read_text())
+    (folder / "results/mug/report.json").write_text(json.dumps({**report, "failures": ["scale: no tag."]}))
+    assert run("clean", "mug")[0] == 1
+    status, output = run("run", "mug.mp4", "--cores", "2")
+    assert status == 0, output
+    assert json.loads((folder / "results/mug/report.json").read_text())["failures"] == []
+    assert run("clean", "mug", "--yes")[0] == 0
+
+
+def test_figures_stay_wherever_they_are(mine):
+    folder, run = mine
+    (folder / "results/mug/12_depth_experiment/trials").mkdir(parents=True)
+    for name in ("metrics.csv", "trials/a.zarr.zip"):
+        (folder / "results/mug/12_depth_experiment" / name).write_text("figures")
+    assert run("clean", "mug", "--yes")[0] == 0
+    assert (folder / "results/mug/12_depth_experiment/metrics.csv").is_file()
+    assert not (folder / "results/mug/12_depth_experiment/trials").exists()
 
 
 @pytest.mark.parametrize("lock", ["results/logs/run.lock", ".snakemake/run.lock"])

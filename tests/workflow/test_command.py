@@ -157,7 +157,7 @@ def test_an_interrupted_run_says_how_to_go_on_leaves_nobody_and_is_resumed(proje
     output = running.communicate(timeout=60)[0]
     assert running.returncode == 130
     said = output.rstrip().splitlines()
-    assert said[-1] == "threedfs: not finished; the same command goes on where it was stopped."
+    assert said[-1] == "threedfs: not finished; run the same command again to resume."
     assert "Traceback" not in output and output.count("not finished") == 1
     until = time.monotonic() + 5
     while _processes_in(tmp_path) and time.monotonic() < until:

@@ -30,6 +30,9 @@ rule crops:
         settings=settings_of("crops"),
         seed=config["seed"],
         content=fingerprint_of("source"),
+        labels=lambda wildcards: {
+            "frame_far_factor": settings_of("keyframes")(wildcards)["far_factor"]
+        },
     message:
         "Cut the crops of {wildcards.sequence}."
     script:

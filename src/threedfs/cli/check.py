@@ -33,6 +33,7 @@ def _check(path: Path) -> int:
     notes = io.StringIO()
     source = scan_source(path, Progress("check", notes, interval=float("inf")))
     count = len(source.names)
+    total = count + source.unreadable
     reader = FrameReader(source, Progress("check", notes), longest_side=_LONGEST_SIDE, step=choose_step(count, _LOOKS))
     looks, shape = [], (0, 0)
     for frame in reader:
@@ -40,11 +41,11 @@ def _check(path: Path) -> int:
         shape = frame.image.shape[:2]
     steps = [measure_step(*pair, shape) for pair in itertools.pairwise(looks)]
     seconds = source.seconds if isinstance(source, Video) else None
-    about = describe_stream(path) if isinstance(source, Video) else f"{count} photos"
+    about = describe_stream(path) if isinstance(source, Video) else f"{total} photos"
     print(f"{path}: {source.shape[1]}x{source.shape[0]} pixels, {about}")
     if reader.skipped:
-        print(f"       {reader.skipped} of {count} cannot be decoded and are left out")
-    opinions = judge_film(looks, steps, seconds=seconds, frames=count - reader.skipped)
+        print(f"       {reader.skipped} of {total} cannot be decoded and are left out")
+    opinions = judge_film(looks, steps, seconds=seconds, frames=total - reader.skipped)
     for opinion in opinions:
         print(f"  {opinion.grade:5} {opinion.what}: {opinion.value}")
         if opinion.grade != GOOD:

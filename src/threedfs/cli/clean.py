@@ -18,6 +18,8 @@ from threedfs.params.sequences import RUN_FILES
 _STAGE = re.compile(r"\d\d_\w+")
 _KEPT = {"02_poses", "11_object", "12_evaluate"}
 """Folders of a sequence that hold what a user wants: cameras, meshes and masks, figures."""
+_KEPT_SUFFIXES = {".json", ".csv"}
+"""Of files that stay wherever they are: small descriptions, figures."""
 _MEGABYTE = 1e6
 
 
@@ -34,8 +36,8 @@ def add_clean(actions: argparse._SubParsersAction) -> None:
 def clean(arguments: argparse.Namespace) -> int:
     """List the intermediate files of finished sequences, and remove them if told to; return the exit status.
 
-    Meshes, masks, figures, cameras, the report, logs and small descriptions (JSON) stay. A run that needs what was
-    removed takes it from the store, or makes it again.
+    Meshes, masks, figures (CSV), cameras, the report, logs and small descriptions (JSON) stay. A run that needs what
+    was removed takes it from the store, or makes it again.
 
     Raises
     ------
@@ -69,7 +71,7 @@ def find_intermediate(folder: Path) -> Iterator[Path]:
         if _STAGE.fullmatch(stage.name) and stage.name not in _KEPT and stage.is_dir() and not stage.is_symlink():
             for path in sorted(stage.rglob("*")):
                 inside = path.relative_to(stage).parts
-                wanted = path.suffix == ".json" or {"logs", "benchmarks"} & set(inside)
+                wanted = path.suffix in _KEPT_SUFFIXES or {"logs", "benchmarks"} & set(inside)
                 if (path.is_file() or path.is_symlink()) and not wanted:
                     yield path
 
@@ -96,12 +98,16 @@ def _find(out: Path, text: str) -> Path:
 
 
 def _is_finished(folder: Path) -> bool:
-    """Say whether a sequence has a mesh or masks and a report, and none of its jobs has failed."""
+    """Say whether a sequence has a mesh or masks and a report that tells of no failure, and no job has failed since."""
     from threedfs.run_end.logs import find_failures
+    from threedfs.run_end.summary import read_summary
 
     made = any((folder / "11_object").glob("*/mesh.ply")) or any((folder / "11_object").glob("*/masks"))
-    failed = any(failure.sequence == folder.name for failure in find_failures(folder.parent, 0.0))
-    return made and (folder / "report.html").is_file() and not failed
+    report, summary = folder / "report.html", read_summary(folder)
+    if not made or not report.is_file() or summary is None or summary.failures:
+        return False
+    since = report.stat().st_mtime
+    return all(failure.sequence != folder.name for failure in find_failures(folder.parent, since))
 
 
 def _refuse_running(out: Path) -> None:
@@ -142,10 +148,10 @@ def _tell(out: Path, freed: float, folders: list[Path], done: bool) -> None:
     elif done:
         print(f"{freed / _MEGABYTE:9.1f} MB  removed; meshes, masks, reports and figures are as before.")
     else:
-        print(f"{freed / _MEGABYTE:9.1f} MB  can be removed; nothing was yet: add --yes.")
+        print(f"{freed / _MEGABYTE:9.1f} MB  can be removed; nothing has been removed yet. Add --yes to remove it.")
     for store in dict.fromkeys(_store_of(out, folder) for folder in folders):
         held = sum(path.lstat().st_size for path in store.rglob("*") if path.is_file())
-        print(f"{held / _MEGABYTE:9.1f} MB  stay in {store}, from which runs take it again (threedfs store gc).")
+        print(f"{held / _MEGABYTE:9.1f} MB  remain in {store}; later runs take them from there.")
 
 
 def _store_of(out: Path, folder: Path) -> Path:

@@ -95,7 +95,7 @@ def _export_mesh(arguments: argparse.Namespace) -> int:
     in_metres = arguments.file.suffix.lower() == ".glb"
     size = None
     if arguments.height is not None:
-        size = str(read_height(arguments.height) / (1000 if in_metres else 1))
+        size = read_height(arguments.height) / (1000 if in_metres else 1)
     if not arguments.faces:
         tall = export(arguments.results, size, arguments.file, arguments.method)
         print(f"{arguments.file}: {tall:.4g} {'m' if in_metres else 'mm'} tall")

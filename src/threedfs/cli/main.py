@@ -14,7 +14,7 @@ from threedfs.cli.export import add_export
 from threedfs.cli.request import INTERRUPTED, QUALITIES, count_cores
 from threedfs.errors import UserError
 
-_METHODS = {
+METHOD_LINES = {
     "surface": "confirmed depth and the hull of the masks: the mesh to keep, with photographs on it",
     "sdf_2d3d_voxel": "the fused field inside of the voxels of the joint cut: the paper's mesh",
     "gc_2d3d_pixel": "masks by the joint cut of images and voxels",
@@ -151,7 +151,7 @@ def _score(arguments: argparse.Namespace) -> int:
 
 
 def _list_methods(arguments: argparse.Namespace) -> int:
-    for name, meaning in _METHODS.items():
+    for name, meaning in METHOD_LINES.items():
         print(f"{name:16} {meaning}")
     return 0
 

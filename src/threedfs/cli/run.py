@@ -50,7 +50,7 @@ def run(arguments: Namespace) -> int:
             print(f"{request.source.name} is called {request.name} in the results.", flush=True)
     outcome = run_workflow(requests, changes, out, arguments.quality, arguments.cores)
     if outcome.interrupted:
-        print("threedfs: not finished; the same command goes on where it was stopped.", file=sys.stderr)
+        print("threedfs: not finished; run the same command again to resume.", file=sys.stderr)
         return INTERRUPTED
     failed = [request for request in requests if outcome.names(request.name)]
     for request in requests:

@@ -88,7 +88,7 @@ def _clear(arguments: Namespace) -> int:
             print(path.relative_to(store))
     done = "removed" if arguments.delete else "can go (--delete removes them)"
     kept = ", ".join(map(str, results))
-    print(f"{len(found)} files, {_tell(total)}, {done}; kept: what {kept} needs, {len(keys)} pieces of work")
+    print(f"{len(found)} files, {_tell(total)}, {done}; kept: what {kept} needs, {len(keys)} actions")
     return 0
 
 

@@ -14,7 +14,12 @@ _LEAST_NEAR = 0.05
 
 
 def expect_crop_range(
-    keyframe: Keyframe, points: np.ndarray, corners: np.ndarray, near_factor: float, far_factor: float
+    keyframe: Keyframe,
+    points: np.ndarray,
+    corners: np.ndarray,
+    near_factor: float,
+    far_factor: float,
+    frame_far_factor: float,
 ) -> Keyframe:
     """Give a keyframe the depths to search in its crop, scene units: the box, and what sparse points show behind it.
 
@@ -29,6 +34,8 @@ def expect_crop_range(
         Of the object's box, world.
     near_factor, far_factor : float
         Near end over the box's nearest depth, far end over the 97th percentile of the points' depths.
+    frame_far_factor : float
+        Far end of the whole frame's range over that percentile of the points in the frame.
 
     Returns
     -------
@@ -40,7 +47,7 @@ def expect_crop_range(
     near = max(near_factor * depths.min(), _LEAST_NEAR * depths.mean())
     pixels, depth = project(view, points)
     shown = depth[inside(view.camera, pixels)]
-    behind = min(np.percentile(shown, 97), keyframe.far / far_factor) if len(shown) else 0.0
+    behind = min(np.percentile(shown, 97), keyframe.far / frame_far_factor) if len(shown) else 0.0
     nearest, farthest = max(depths.min(), near), depths.max()
     far = far_factor * max(behind, farthest)
     return replace(keyframe, near=float(near), far=float(far), within=(float(nearest), float(farthest)))

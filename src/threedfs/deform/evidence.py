@@ -9,6 +9,7 @@ from scipy.ndimage import map_coordinates
 
 from threedfs.errors import UserError
 from threedfs.geometry.grid import voxel_from_world
+from threedfs.geometry.plane import widest_gap
 from threedfs.types import OrientedPoints, Plane, VoxelGrid
 
 _PLACE = 3.0
@@ -199,10 +200,3 @@ def check_samples(samples: SurfaceSamples, centre: np.ndarray, plane: Plane) -> 
             f"Expected surface points around the object, found all of them within {360 - gap:.0f} degrees; "
             f"the other sides were not filmed or have no texture; {advice}"
         )
-
-
-def widest_gap(offsets: np.ndarray, up: np.ndarray) -> float:
-    """Return the widest angle around an axis, degrees, in which none of the directions (N, 3) lies."""
-    first = np.cross(up, np.eye(3)[np.argmin(np.abs(up))])
-    turns = np.sort(np.degrees(np.arctan2(offsets @ np.cross(up, first), offsets @ first)))
-    return float(np.diff(turns, append=turns[:1] + 360).max())

@@ -33,7 +33,7 @@ def find_doubts(figures: Mapping[str, float]) -> list[str]:
         )
     if figures.get("mesh_far_share", 0.0) > _WORST_FAR_SHARE:
         found.append(
-            f"{figures['mesh_far_share']:.0f} % of the mesh are far from the true one: is that of this sequence, and "
+            f"{figures['mesh_far_share']:.0f} % of the mesh is far from the true one: is that of this sequence, and "
             "in the coordinates of the true cameras?"
         )
     return found

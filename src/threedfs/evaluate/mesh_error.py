@@ -165,6 +165,12 @@ def find_genus(mesh: Mesh) -> int:
 
 
 def filled_share(mesh: Mesh) -> float:
-    """Return the volume of a closed mesh as a share of its bounding box; negative if its faces look inwards."""
-    extent = np.ptp(mesh.vertices[np.unique(mesh.faces)], axis=0)
-    return enclosed_volume(mesh) / float(np.prod(extent))
+    """Return the volume of a closed mesh as a share of its bounding box; negative if its faces look inwards.
+
+    Examples
+    --------
+    >>> filled_share(Mesh(np.array([[0., 0, 0], [1, 0, 0], [0, 1, 0]]), np.array([[0, 1, 2]])))  # a flat one
+    0.0
+    """
+    box = float(np.prod(np.ptp(mesh.vertices[np.unique(mesh.faces)], axis=0)))
+    return enclosed_volume(mesh) / box if box else 0.0

@@ -110,9 +110,10 @@ def check_enough(reader: FrameReader, min_frames: int) -> None:
         If fewer than `min_frames` were.
     """
     if reader.taken < min_frames:
+        total = len(reader.source.names) + reader.source.unreadable
         raise UserError(
             f"{reader.source.path}: expected at least {min_frames} usable frames, got {reader.taken} "
-            f"of {len(reader.source.names)} ({reader.blank} blank, {reader.skipped} that cannot be decoded); "
+            f"of {total} ({reader.blank} blank, {reader.skipped} that cannot be decoded); "
             f"{_advise(reader)}."
         )
 

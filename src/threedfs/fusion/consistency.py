@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
-import numba
 import numpy as np
 from numba import njit, prange
 from scipy.ndimage import minimum_filter
 
 from threedfs.geometry.transfer import px_from_px, transfer
+from threedfs.threads import use_threads
 from threedfs.types import View
 
 _BLOCK = 8  # depth maps that are compared with each other one read: they and their counts are in memory
@@ -111,7 +111,7 @@ def compare_depth(
     targets : sequence of int
         Ranks of the views whose maps are compared; all by default.
     """
-    numba.set_num_threads(max(1, min(threads, numba.config.NUMBA_NUM_THREADS)))
+    use_threads(threads)
     partners = _nearest_views(views, rule.max_views)
     wanted = range(len(views)) if targets is None else targets
     # Maps of different sizes are compared on one canvas, beyond whose own part a map knows nothing.

@@ -6,10 +6,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Iterable
 from typing import Any
 
-import numba
 import numpy as np
 
 from threedfs.read_ahead import map_ahead
+from threedfs.threads import use_threads
 from threedfs.types import View, VoxelGrid
 
 
@@ -43,7 +43,7 @@ class ViewFusion(ABC):
             self._count(ballot)
 
     def _count(self, ballot: tuple) -> None:
-        numba.set_num_threads(max(1, min(self._threads, numba.config.NUMBA_NUM_THREADS)))
+        use_threads(self._threads)
         self.count(*ballot)
 
     @abstractmethod

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 from numba import njit, prange
 
 from threedfs.checks import check_shape
+from threedfs.threads import use_threads
 
 
 def find_near(voxels: np.ndarray, radius: float, among: np.ndarray, threads: int = 1) -> np.ndarray:
@@ -36,7 +36,7 @@ def find_near(voxels: np.ndarray, radius: float, among: np.ndarray, threads: int
         If the two have different shapes.
     """
     check_shape(among, voxels.shape, "voxels to test")
-    numba.set_num_threads(max(1, min(threads, numba.config.NUMBA_NUM_THREADS)))
+    use_threads(threads)
     near = np.zeros(voxels.shape, np.bool_)
     _find(voxels, _ball(radius), among, near)
     return near

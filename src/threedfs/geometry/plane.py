@@ -85,3 +85,10 @@ def score_planes(
         for i in range(0, len(normals), _CHUNK)
     ]
     return np.concatenate(scores) if scores else np.empty(0)
+
+
+def widest_gap(offsets: np.ndarray, up: np.ndarray) -> float:
+    """Return the widest angle around an axis, degrees, in which none of the directions (N, 3) lies."""
+    first = np.cross(up, np.eye(3)[np.argmin(np.abs(up))])
+    turns = np.sort(np.degrees(np.arctan2(offsets @ np.cross(up, first), offsets @ first)))
+    return float(np.diff(turns, append=turns[:1] + 360).max())

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-import numba
 import numpy as np
 from numba import njit, prange
 
@@ -12,6 +11,7 @@ from threedfs.geometry.grid import voxel_places
 from threedfs.read_ahead import map_ahead
 from threedfs.segment.lookup import find_pixel
 from threedfs.segment.outline import depth_inside
+from threedfs.threads import use_threads
 from threedfs.types import View, VoxelGrid
 
 _AT_ONCE = 1 << 20
@@ -52,7 +52,7 @@ def measure_hull(
     shown = [name for name in views if masks[name].any()]
     count = len(shown)
     ranks = [min(int(share * count), max(count - 1, 0)) for share in tolerances]
-    numba.set_num_threads(max(1, min(threads, numba.config.NUMBA_NUM_THREADS)))
+    use_threads(threads)
     outside = list(map_ahead(lambda name: -depth_inside(masks[name] | ~valid[name]), shown, threads=threads))
     fields = [np.ones(grid.shape, np.float32) for _ in ranks]
     for part in np.split(places, range(_AT_ONCE, len(places), _AT_ONCE)):

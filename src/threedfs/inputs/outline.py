@@ -36,14 +36,11 @@ def compare_outlines(vertices: np.ndarray, given: GivenCamera, mask: np.ndarray)
 
 
 def _project(points: np.ndarray, given: GivenCamera) -> np.ndarray:
-    """Return the pixels (M, 2) of the points (N, 3) in front of a camera, distorted as its lens does."""
+    """Return the pixels (M, 2) at which a lens shows those of the points (N, 3) that it can show."""
     points = points @ given.cam_from_world[:3, :3].T + given.cam_from_world[:3, 3]
     points = points[points[:, 2] > 0]
-    flat = points[:, :2] / points[:, 2:]
-    squared = (flat**2).sum(axis=1, keepdims=True)
-    flat = flat * (1 + given.lens.k1 * squared + given.lens.k2 * squared**2)
-    camera = given.lens.camera
-    return flat * (camera.fx, camera.fy) + (camera.cx, camera.cy)
+    pixels = given.lens.denormalise(points[:, :2] / points[:, 2:])
+    return pixels[np.isfinite(pixels).all(axis=1)]
 
 
 def _fill(pixels: np.ndarray, shape: tuple[int, int]) -> np.ndarray:

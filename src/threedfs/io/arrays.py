@@ -90,24 +90,42 @@ def writing_arrays(path: Path, schema: Schema, header: Mapping[str, Any]) -> Ite
         writer.finish()
 
 
+class _ArtifactZip(ZipStore):
+    """The zip of an artifact: whoever reads a damaged part of it, now or later, is told so in a sentence."""
+
+    def __init__(self, path: Path, schema: Schema) -> None:
+        super().__init__(path, mode="r")
+        self._schema = schema
+
+    async def get(self, key, prototype, byte_range=None):
+        try:
+            return await super().get(key, prototype, byte_range)
+        except (zipfile.BadZipFile, EOFError) as fault:
+            raise _say_damaged(self.path, self._schema, fault) from fault
+
+
+def _say_damaged(path: Path, schema: Schema, fault: Exception) -> UserError:
+    return UserError(
+        f"{path}: expected a whole file of schema {schema.name}, got a damaged one ({fault}); "
+        f"delete it and run again, rule {schema.rules} writes it."
+    )
+
+
 def open_arrays(path: Path, schema: Schema) -> zarr.Group:
     """Open an artifact for reading; chunks are read when indexed.
 
     Raises
     ------
     UserError
-        If the file is missing, is no whole zip, or has another schema.
+        If the file is missing, is no whole zip, or has another schema; when indexed, if what is read is damaged.
     """
     path = Path(path)
     if not path.is_file():
         raise UserError(f"{path}: expected a file of schema {schema.name}, found none; rule {schema.rules} writes it.")
     try:
-        group = zarr.open_group(ZipStore(path, mode="r"), mode="r", zarr_format=3)
+        group = zarr.open_group(_ArtifactZip(path, schema), mode="r", zarr_format=3)
     except (zipfile.BadZipFile, FileNotFoundError, ValueError) as fault:
-        raise UserError(
-            f"{path}: expected a whole file of schema {schema.name}, got a damaged one ({fault}); "
-            f"delete it and run again, rule {schema.rules} writes it."
-        ) from fault
+        raise _say_damaged(path, schema, fault) from fault
     check_schema(path, group.attrs.get("schema"), schema)
     return group
 

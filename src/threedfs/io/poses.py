@@ -15,7 +15,7 @@ from threedfs.io.schema import Schema
 from threedfs.io.views import decode_view, encode_view
 from threedfs.types import View
 
-POSES = Schema("threedfs/poses/1", "poses")
+POSES = Schema("threedfs/poses/2", "poses")
 
 
 @dataclass(frozen=True)
@@ -32,8 +32,6 @@ class Poses:
         (k1, k2): a point at normalised (x, y) is seen at (x, y) (1 + k1 r^2 + k2 r^4) in the raw frame.
     scene_from_input : Similarity
         From the coordinates of the given cameras (or of the mapper) to scene units.
-    metres_per_unit : float or None
-        Metric scale, where known.
     quality : mapping of str to float
         The figures the gates looked at.
     """
@@ -42,7 +40,6 @@ class Poses:
     unposed: tuple[str, ...]
     distortion: tuple[float, float]
     scene_from_input: Similarity
-    metres_per_unit: float | None = None
     quality: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -60,7 +57,6 @@ def write_poses(path: Path, poses: Poses, header: Mapping[str, Any]) -> None:
             "rotation": similarity.rotation.tolist(),
             "translation": similarity.translation.tolist(),
         },
-        "metres_per_unit": poses.metres_per_unit,
         "quality": dict(poses.quality),
     }
     write_document(path, POSES, content, header)
@@ -77,6 +73,5 @@ def read_poses(path: Path) -> Poses:
         scene_from_input=Similarity(
             similarity["scale"], np.array(similarity["rotation"]), np.array(similarity["translation"])
         ),
-        metres_per_unit=content["metres_per_unit"],
         quality=content["quality"],
     )

@@ -16,7 +16,7 @@ class Schema:
     rules: str
 
 
-KEYFRAMES = Schema("threedfs/keyframes/1", "keyframes")
+KEYFRAMES = Schema("threedfs/keyframes/1", "keyframes, crops or shrink")
 """Here, because the store looks into keyframes too, and loads no numeric library for it."""
 
 

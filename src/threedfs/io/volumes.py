@@ -15,7 +15,7 @@ from threedfs.io.grids import describe_grid, grid_of
 from threedfs.io.schema import Schema
 from threedfs.types import Box, Plane, Support, VoxelGrid
 
-SILHOUETTES = Schema("threedfs/silhouettes/1", "object, poisson, pixel_masks or cut_object")
+SILHOUETTES = Schema("threedfs/silhouettes/1", "object, poisson, pixel_masks, cut_object or surface")
 SUPPORT = Schema("threedfs/support/2", "locate")
 VOLUME = Schema("threedfs/volume/2", "fuse_scene, fuse_object, fuse_baseline, deform or object")
 

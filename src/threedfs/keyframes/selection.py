@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from threedfs.locate.fixation import find_fixation
 from threedfs.types import View
 
 
@@ -15,16 +16,7 @@ def viewing_directions(views: Sequence[View], xyz: np.ndarray) -> np.ndarray:
     That point is nearest to all optical axes in the least-squares sense; where the axes are nearly parallel, the
     median of the points `xyz` (P, 3) decides.
     """
-    centres = np.stack([view.centre for view in views])
-    axes = np.stack([view.cam_from_world[2, :3] for view in views])
-    across = np.eye(3) - axes[:, :, None] * axes[:, None, :]
-    # A pull of one axis in a hundred keeps parallel axes solvable and moves the point of converging ones little.
-    pull = 0.01 * len(views)
-    focus = np.linalg.solve(
-        across.sum(axis=0) + pull * np.eye(3),
-        np.einsum("fij,fj->i", across, centres) + pull * np.median(xyz, axis=0),
-    )
-    outward = centres - focus
+    outward = np.stack([view.centre for view in views]) - find_fixation(views, np.median(xyz, axis=0))
     return outward / np.linalg.norm(outward, axis=1, keepdims=True)
 
 

@@ -240,16 +240,24 @@ def _explain(fault: jsonschema.ValidationError, start: str) -> str:
         case "exclusiveMinimum":
             return f"{where}: expected more than {limit}, got {value}."
         case "pattern":
-            return explain_name(str(value), where, "variant" if path.startswith("variants") else "sequence")
+            return explain_name(str(value), where, _named_by(path))
         case _:
             return f"{where}: {fault.message}; see config/README.md."
 
 
+def _named_by(path: str) -> str:
+    """Return what the value at a place of the configuration is the name of."""
+    if path.rpartition(".")[2] == "dataset":
+        return "data set"
+    return "variant" if path.startswith("variants") else "sequence"
+
+
 def explain_name(name: str, where: str, what: str = "sequence") -> str:
     """Say why a name cannot name a sequence, or what else it is to name, and where it stands."""
+    reason = "plots have it in their files' names" if what == "data set" else "results are put in a folder of that name"
     return (
         f"{_shorten(name)!r} cannot name a {what}: expected letters, digits, dots, dashes and underscores only, at "
-        f"most {LONGEST_NAME}, because results are put in a folder of that name (in {_shorten(where, 200)})."
+        f"most {LONGEST_NAME}, because {reason} (in {_shorten(where, 200)})."
     )
 
 

@@ -11,7 +11,7 @@ from threedfs.params.field import parameter
 class DepthTrialParams:
     """What is given to the depth maps of a keyframe in the depth experiment.
 
-    All else is as under depth, without stereo.
+    All else is as under depth, without stereo and without `depth.object_pixels`: the trial is of the whole frame.
     """
 
     measurements: tuple[int, ...] = parameter(

@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from threedfs.geometry.plane import axes_on
+from threedfs.geometry.plane import axes_on, widest_gap
 from threedfs.types import Support, View
 
 _SIZE, _EDGE = 420.0, 24.0
@@ -46,9 +46,6 @@ def _hull_order(points: np.ndarray) -> list[int]:
     return list(np.argsort(np.arctan2(away[:, 1], away[:, 0]), kind="stable"))
 
 
-def widest_gap(views: Sequence[View], place: Support) -> float:
+def unfilmed_angle(views: Sequence[View], place: Support) -> float:
     """Return the widest angle around the object, degrees, from which no camera looked at it."""
-    axes = axes_on(place.plane.normal)[:2]
-    away = np.stack([view.centre - place.box.centre for view in views]) @ axes.T
-    angle = np.sort(np.degrees(np.arctan2(away[:, 1], away[:, 0])))
-    return float(np.diff(np.append(angle, angle[0] + 360)).max())
+    return widest_gap(np.stack([view.centre - place.box.centre for view in views]), place.plane.normal)

@@ -1,13 +1,10 @@
 """Write the mesh of an object upright and in its true size, for a printer or a viewer.
 
-    python -m threedfs.run_end.export results/my 95 my.stl [METHOD]
-
-The format is that of the file's ending: stl, ply, obj or glb. METHOD is surface where none is given.
+The format is that of the file's ending: stl, ply, obj or glb.
 """
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -28,7 +25,7 @@ _FORMATS = (".stl", ".ply", ".obj", ".glb")
 _TEXTURED = {".obj": write_textured_obj, ".glb": write_textured_glb}
 
 
-def export(sequence: Path, height: str | None, file: Path, method: str = "surface") -> float:
+def export(sequence: Path, height: float | None, file: Path, method: str = "surface") -> float:
     """Write a sequence's mesh, with its texture or colours if it has any, standing on the plane z = 0.
 
     Returns its height, in the unit of the file.
@@ -39,8 +36,8 @@ def export(sequence: Path, height: str | None, file: Path, method: str = "surfac
     ----------
     sequence : Path
         Folder of its results.
-    height : str or None
-        A positive number, in the unit that the file is to have; None takes the scale that the run found, and writes
+    height : float or None
+        Positive, in the unit that the file is to have; None takes the scale that the run found, and writes
         millimetres, GLB in metres.
     file : Path
     method : str
@@ -63,7 +60,7 @@ def export(sequence: Path, height: str | None, file: Path, method: str = "surfac
 
 
 def export_levels(
-    sequence: Path, height: str | None, file: Path, faces: Sequence[int], method: str = "surface"
+    sequence: Path, height: float | None, file: Path, faces: Sequence[int], method: str = "surface"
 ) -> dict[Path, Level]:
     """Write a sequence's mesh with fewer faces, as `export` does it, with the colours of its vertices and no texture.
 
@@ -71,7 +68,7 @@ def export_levels(
     ----------
     sequence : Path
         Folder of its results.
-    height : str or None
+    height : float or None
         As `export` takes it.
     file : Path
         NAME.ENDING for one number of faces; of several, each has a file NAME_FACES.ENDING of its own.
@@ -107,13 +104,11 @@ def export_levels(
     return written
 
 
-def _prepare(sequence: Path, height: str | None, file: Path, method: str) -> tuple[Path, float, Callable[[Mesh], Mesh]]:
+def _prepare(
+    sequence: Path, height: float | None, file: Path, method: str
+) -> tuple[Path, float, Callable[[Mesh], Mesh]]:
     """Return the path of a mesh, its height in the unit of a file, and what puts it upright and to scale there."""
-    try:
-        size = None if height is None else float(height)
-    except ValueError:
-        size = 0.0
-    if size is not None and not 0 < size < float("inf"):
+    if height is not None and not 0 < height < float("inf"):
         raise UserError(f"height: expected a positive number, the height of the object, got {height}.")
     if file.suffix.lower() not in _FORMATS:
         raise UserError(f"{file}: expected a file that ends in {', '.join(_FORMATS)}; rename it.")
@@ -124,9 +119,7 @@ def _prepare(sequence: Path, height: str | None, file: Path, method: str) -> tup
             "name a method that was run with --method."
         )
     plane, kind = read_support(sequence / "03_scene" / "support.json").plane, file.suffix.lower()
-
-    if size is None:
-        size = _find_height(sequence, path, plane) * (1 if kind == ".glb" else 1000)
+    size = _find_height(sequence, path, plane) * (1 if kind == ".glb" else 1000) if height is None else height
 
     def place(mesh: Mesh) -> Mesh:
         upright = stand_up(mesh, plane, size)
@@ -144,12 +137,3 @@ def _find_height(sequence: Path, path: Path, plane: Plane) -> float:
             "finds the size, found neither."
         )
     return scale.metres_per_unit * height_on(read_mesh(path), plane)
-
-
-if __name__ == "__main__":
-    if not 4 <= len(sys.argv) <= 5:
-        sys.exit("threedfs: expected a folder of results, a height and a file to write, as in: results/my 95 my.stl")
-    try:
-        export(Path(sys.argv[1]), sys.argv[2], Path(sys.argv[3]), *sys.argv[4:])
-    except UserError as fault:
-        sys.exit(f"threedfs: {fault}")

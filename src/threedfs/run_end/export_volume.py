@@ -10,7 +10,6 @@ from threedfs.errors import UserError
 from threedfs.geometry.plane import axes_on
 from threedfs.io.meshes import read_mesh
 from threedfs.io.ome_zarr import write_ome_zarr
-from threedfs.io.poses import read_poses
 from threedfs.io.scales import find_scale
 from threedfs.io.volumes import read_support, read_volume
 
@@ -25,8 +24,7 @@ def export_volume(sequence: Path, folder: Path, height: float | None = None, met
     """Write the fused signed distance field around the object as OME-Zarr 0.5; return the unit of its lengths.
 
     Axes are those of the grid, which stands on the support plane: z is up. Lengths are metres where the size of the
-    scene is known, by the height of the object, the scale that the run found, or given cameras; else scene units, and
-    no unit is named.
+    scene is known, by the height of the object or the scale that the run found; else scene units, and no unit is named.
 
     Parameters
     ----------
@@ -59,10 +57,7 @@ def export_volume(sequence: Path, folder: Path, height: float | None = None, met
 def _metres_per_unit(sequence: Path, height: float | None, method: str) -> float | None:
     if height is None:
         scale = find_scale(sequence)
-        if scale is not None:
-            return scale.metres_per_unit
-        poses = sequence / "02_poses/poses.json"
-        return read_poses(poses).metres_per_unit if poses.is_file() else None
+        return None if scale is None else scale.metres_per_unit
     mesh = read_mesh(sequence / "11_object" / method / "mesh.ply")
     along = mesh.vertices @ axes_on(read_support(sequence / "03_scene/support.json").plane.normal)[2]
     return height / float(np.ptp(along))

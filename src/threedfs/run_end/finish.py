@@ -224,9 +224,12 @@ def report_run(run: Run, unfinished: Collection[str], note: Callable[[str], obje
 
 
 def _is_due(folder: Path, methods: Sequence[str]) -> bool:
-    """Say whether a sequence needs another report: it has newer results, or methods of now are others."""
+    """Say whether a sequence, none of whose jobs failed, needs another report.
+
+    It does if it has newer results, if methods of now are others, and if its report tells of a failure.
+    """
     summary = read_summary(folder)
-    known = summary is not None and summary.methods == tuple(methods)
+    known = summary is not None and summary.methods == tuple(methods) and not summary.failures
     return _is_newer(folder) or ((folder / "report.html").is_file() and not known)
 
 

@@ -23,7 +23,7 @@ from threedfs.io.scales import find_scale, tell_scale
 from threedfs.io.textured_meshes import read_textured_obj
 from threedfs.io.volumes import read_silhouettes
 from threedfs.object.stand import height_on
-from threedfs.report.camera_path import draw_path, widest_gap
+from threedfs.report.camera_path import draw_path, unfilmed_angle
 from threedfs.report.findings import Facts, Finding, doubt_truth, judge, sum_up
 from threedfs.report.page import KeyframePictures, Report, write_page
 from threedfs.report.pictures import color_depth, color_normals, embed_image, outline_mask
@@ -177,7 +177,7 @@ def _judge(folder: Path, known: Known) -> list[Finding]:
             posed=len(known.poses.views),
             frames=len(known.poses.views) + len(known.poses.unposed),
             quality=known.poses.quality,
-            widest_gap=widest_gap(known.poses.views, known.place),
+            widest_gap=unfilmed_angle(known.poses.views, known.place),
             margin_used=known.place.figures.get("margin_used"),
             closed=bool(sound["mesh_closed"]),
             pieces=int(sound["mesh_pieces"]),

@@ -29,7 +29,8 @@ class ImageEvidence:
         First labels of all.
     outside : (count,) float64
         Share of each superpixel's pixels whose depth lies outside the object's box (Eq. 22). Differs from the paper:
-        there it is the region of interest, which holds much of the support too.
+        there it is the region of interest, which holds much of the support too, as does
+        `roi: grid` on the region's grid.
     pair_weight : (P,) float32
         Cost of different labels at the superpixels' pairs.
     link_pairs : (M, 2) int64

@@ -14,8 +14,8 @@ UNDECIDED = 255
 def normalised_height(height: np.ndarray) -> np.ndarray:
     """Return the normalised distance of voxels from the support plane, in (0, 1), 0.5 on it (Eq. 24).
 
-    Differs from the paper: the spread that it is normalised by is that of the object's own grid, which reaches less far
-    below the plane than the paper's region of interest.
+    Differs from the paper: the spread that it is normalised by is that of the grid, by default the object's own, which
+    reaches less far below the plane than the paper's region of interest.
 
     Parameters
     ----------

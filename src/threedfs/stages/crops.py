@@ -31,12 +31,14 @@ def run(
     support: Path | None,
     crops: Path,
     views: Path,
+    frame_far_factor: float,
     params: CropsParams,
     job: Job,
 ) -> None:
     """Read the source again; write crops.zarr.zip and the keyframes as views of them.
 
-    Without the place of an object, or if `crops.whole` is set, frames are taken whole.
+    Without the place of an object, or if `crops.whole` is set, frames are taken whole. `frame_far_factor` is what the
+    stage keyframes multiplied the far end of its ranges with.
 
     Raises
     ------
@@ -81,7 +83,8 @@ def run(
         neighbours = tuple(of_frame[neighbour.name][1] for neighbour in entry.neighbours)
         seen = replace(entry, view=of_frame[entry.view.name][1], neighbours=neighbours)
         if corners is not None and find_window(of_frame[entry.view.name][0], corners, params.margin):
-            seen = expect_crop_range(seen, xyz, corners, params.near_factor, params.far_factor)
+            factors = (params.near_factor, params.far_factor, frame_far_factor)
+            seen = expect_crop_range(seen, xyz, corners, *factors)
         moved.append(seen)
     length = None if corners is None else measure_object(placed, corners)
     write_keyframes(views, moved, job.header, needs_stereo=read_needs_stereo(keyframes), object_pixels=length)

@@ -89,6 +89,7 @@ def find_unneeded(store: Path, keys: Collection[str], now: float | None = None) 
         *(path for path in walk_places(store / "objects") if path.name not in objects),
         *(path for path in walk_places(store / "actions") if path.stem not in kept),
         *(path for path in walk(store / "kernels") if path.suffix != ENDING or _age(path, now) > KEPT_DAYS * 86400),
+        *(path for path in sorted((store / "inputs").glob("*.json")) if _age(path, now) > KEPT_DAYS * 86400),
         *(path for path in sorted((store / "scratch").glob("*")) if _age(path, now) > _ABANDONED),
         *(path for path in sorted((store / "claims").glob("*")) if _age(path, now) > _ABANDONED),
         *(path for part in _PARTS for path in sorted((store / part).rglob("*.part")) if _age(path, now) > _ABANDONED),

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-import numba
 import numpy as np
 from numba import njit, prange
 from scipy.ndimage import binary_dilation, maximum_filter
@@ -14,6 +13,7 @@ from threedfs.fusion.view_sdf import invert_depth, measure_voxel, relate
 from threedfs.geometry.grid import voxel_places
 from threedfs.hull.gaps import count_outside
 from threedfs.surface.confirmed import ConfirmedDepth
+from threedfs.threads import use_threads
 from threedfs.types import View
 
 _NEAR = 1.0
@@ -62,7 +62,7 @@ def release_bound(
     places = np.flatnonzero(lost)
     if not held_share or not len(places):
         return bound
-    numba.set_num_threads(max(1, min(depth.threads, numba.config.NUMBA_NUM_THREADS)))
+    use_threads(depth.threads)
     index, count = np.argwhere(lost), np.zeros(grid.shape, np.int32)
     for name, view in depth.views.items():
         inverse = invert_depth(depth.read(name))

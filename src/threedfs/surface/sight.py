@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numba
 import numpy as np
 from numba import njit, prange
 
@@ -12,6 +11,7 @@ from threedfs.fusion.view_sdf import invert_depth, measure_voxel, relate
 from threedfs.geometry.grid import voxel_from_world
 from threedfs.geometry.plane import axes_on
 from threedfs.surface.confirmed import ConfirmedDepth
+from threedfs.threads import use_threads
 
 _NEAR = 2.0
 """Voxels from which what lies before a place hides it: the wall that it is beside does not."""
@@ -55,7 +55,7 @@ def fill_unseen(
     places = np.flatnonzero(above & (hull < 0) & (field >= 0))
     if not least or not len(places):
         return field
-    numba.set_num_threads(max(1, min(depth.threads, numba.config.NUMBA_NUM_THREADS)))
+    use_threads(depth.threads)
     solid = (field < 0) | ~above
     count = _count_sights(solid, places, depth)
     places, count = places[count < least], count[count < least]
