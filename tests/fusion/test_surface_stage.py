@@ -31,7 +31,7 @@ from threedfs.segment.appearance import Appearance
 from threedfs.segment.color_model import ColorModel, lab_from_rgb
 from threedfs.segment.mixture import Mixture
 from threedfs.stages import surface
-from threedfs.surface import shape
+from threedfs.surface import outline, shape
 from threedfs.types import Box, Keyframe, Plane, Support, VoxelGrid
 
 SIDE = 44
@@ -392,7 +392,7 @@ def test_masks_by_the_surface_so_far_mend_those_of_the_segmentation(table, tmp_p
 def test_where_the_second_masks_are_empty_the_first_surface_stays(right, table, monkeypatch):
     """Property: masks by the surface so far that show nothing do not make everything solid."""
     first = work(right, frames=0)[1][0]
-    monkeypatch.setattr(surface, "mask_frame", lambda view, *_: np.zeros(view.camera.shape, bool))
+    monkeypatch.setattr(outline, "mask_frame", lambda view, *_: np.zeros(view.camera.shape, bool))
     assert work(right)[1][0] == first
 
 

@@ -83,7 +83,7 @@ rule volumetric_cut:
         "../../envs/threedfs.yaml"
     threads: 1
     resources:
-        mem_mb=memory_of("volumetric_cut"),
+        mem_mb=memory_of("volumetric_cut", grid="volumetric_cut"),
         runtime=minutes(60),
     params:
         code=code_of("volumetric_cut"),
