@@ -205,8 +205,8 @@ def test_the_same_bytes_twice(pitted):
         {"free_contradicted": 0.0},
         {"free_from": 0.0},
         {"free_full": 1.0},
-        {"agreed_from": 0.0},
-        {"agreed_full": 90.0},
+        {"aslant_agree_from": 0.0},
+        {"aslant_agree_full": 90.0},
         {"aslant_from": 0.0},
         {"aslant_full": 1.0},
         {"mirrored_height": 0.9},
@@ -223,7 +223,7 @@ def test_the_same_bytes_twice(pitted):
 )
 def test_every_parameter_acts(pitted, change):
     """Contract: of an object that is not round, or the hull alone would shape it."""
-    base = {"round_full": 0.0, "round_from": 0.0}
+    base = {"round_full": 0.0, "round_until": 0.0}
     assert work(pitted, **(base | change))[1][0] != work(pitted, **base)[1][0]
 
 
@@ -241,7 +241,7 @@ def test_what_textured_things_are_believed_acts(table, tmp_path, change):
         {"hollow_depth": 0.5},
         {"hollow_agree": 1.0},
         {"round_full": 0.45},
-        {"round_from": 0.9},
+        {"round_until": 0.9},
         {"round_trust": 0.2},
         {"hull_tolerance": 0.4},
     ],
@@ -250,7 +250,7 @@ def test_what_textured_things_are_believed_acts(table, tmp_path, change):
 def test_what_tells_of_hollows_acts(pitted, change):
     """Contract: a bare object whose depth, hardly agreed on, lies deep inside of its outline."""
     base = {"sure_from": 0.98, "sure_full": 0.99, "matched_reach": 0.3, "hollow_agree": 2.0, "round_full": 0.1}
-    base |= {"round_from": 0.7, "hollow_depth": 0.05, "round_trust": 1.0, "frames": 0}
+    base |= {"round_until": 0.7, "hollow_depth": 0.05, "round_trust": 1.0, "frames": 0}
     assert work(pitted, **(base | change))[1][0] != work(pitted, **base)[1][0]
 
 
@@ -267,8 +267,8 @@ def lending(table, tmp_path_factory):
         {"lent_from": 10.0},
         {"adopted_within": 0.001},
         {"adopted_reach": 0.1},
-        {"adopted_full": 0.0, "adopted_from": 0.0},
-        {"adopted_from": 0.4},
+        {"adopted_full": 0.0, "adopted_until": 0.0},
+        {"adopted_until": 0.4},
     ],
     ids=str,
 )
@@ -279,7 +279,7 @@ def test_every_parameter_of_what_is_adopted_acts(lending, change):
 def test_a_bare_side_is_where_others_have_found_it(lending, table):
     """Property: with all depth believed, what is adopted takes most of the error of the side's depth away."""
     found = []
-    for change in ({}, {"adopted_full": 0.0, "adopted_from": 0.0}):
+    for change in ({}, {"adopted_full": 0.0, "adopted_until": 0.0}):
         believed = {"agree_from": 0.0, "agree_full": 1.0, "hull_trust": 0.0, "sure_hull_trust": 0.0, "frames": 0}
         mesh, _ = work(lending, **believed, **change)
         beside = mesh.vertices[mesh.vertices[:, 0] > table.centre[0] + 0.5 * table.radius]

@@ -11,7 +11,7 @@ from threedfs.surface.adopt import AdoptRule, adopt_depth, lend_depth
 from threedfs.surface.keyframe_depth import KeyframeDepth
 from threedfs.types import Mesh
 
-RULE = AdoptRule(lent_from=6.0, adopted_within=0.015, adopted_reach=0.02, adopted_full=0.4, adopted_from=0.6)
+RULE = AdoptRule(lent_from=6.0, adopted_within=0.015, adopted_reach=0.02, adopted_full=0.4, adopted_until=0.6)
 LENGTH = 100.0
 OWN, *OTHERS = VIEWS.values()
 SLAB = extract_surface(make_slab(), GRID)
@@ -90,7 +90,7 @@ def test_the_back_of_a_thin_thing_is_not_adopted():
 
 def test_outside_of_the_object_and_when_turned_off_nothing_is_adopted():
     wrong = TRUE * np.float32(1.01)
-    off = replace(RULE, adopted_full=0.0, adopted_from=0.0)
+    off = replace(RULE, adopted_full=0.0, adopted_until=0.0)
     for depth in (adopt(wrong, mask=MASK & ~TOP), adopt(wrong, rule=off)):
         np.testing.assert_array_equal(depth, wrong)
 

@@ -29,14 +29,14 @@ RULE = TrustRule(
     free_textured=2.0,
     textured_from=0.6,
     textured_full=0.8,
-    agreed_from=5.0,
-    agreed_full=9.0,
+    aslant_agree_from=5.0,
+    aslant_agree_full=9.0,
     aslant_from=0.3,
     aslant_full=0.7,
     mirrored_height=0.05,
     hollow_agree=5.0,
     round_full=0.05,
-    round_from=0.1,
+    round_until=0.1,
 )
 SHAPE = (40, 60)
 INSIDE = np.ones(SHAPE, bool)

@@ -23,12 +23,12 @@ class SurfaceParams(SmoothingSettings):
         2.0, "views that agree with a depth up to which it is not trusted for it", minimum=0.0
     )
     agree_full: float = parameter(8.0, "views that agree with a depth from which it is trusted fully", minimum=0.0)
-    agreed_from: float = parameter(
+    aslant_agree_from: float = parameter(
         5.0,
         "views that agree with a depth up to which its vote counts as squarely as it faces the surface",
         minimum=0.0,
     )
-    agreed_full: float = parameter(
+    aslant_agree_full: float = parameter(
         9.0, "views that agree with a depth from which its vote counts by aslant_from and aslant_full", minimum=0.0
     )
     aslant_from: float = parameter(
@@ -139,11 +139,11 @@ class SurfaceParams(SmoothingSettings):
     adopted_full: float = parameter(
         0.5,
         "share of matched pixels around one up to which depth that others have found is adopted fully; with "
-        "adopted_from 0 nothing is",
+        "adopted_until 0 nothing is",
         minimum=0.0,
         maximum=1.0,
     )
-    adopted_from: float = parameter(
+    adopted_until: float = parameter(
         0.7, "share of matched pixels around one from which a keyframe keeps its own depth", minimum=0.0, maximum=1.0
     )
     hull_trust: float = parameter(
@@ -168,7 +168,7 @@ class SurfaceParams(SmoothingSettings):
         minimum=0.0,
         maximum=1.0,
     )
-    round_from: float = parameter(
+    round_until: float = parameter(
         0.1, "share of such pixels from which it is not; with round_full 0, too, none ever is", minimum=0.0, maximum=1.0
     )
     round_trust: float = parameter(0.7, "hull_trust of a round object", minimum=0.0, maximum=1.0)

@@ -30,7 +30,7 @@ class AdoptRule:
     adopted_within: float
     adopted_reach: float
     adopted_full: float
-    adopted_from: float
+    adopted_until: float
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def adopt_depth(found: KeyframeDepth, matched: np.ndarray, lent: Iterable[LentDe
     rule : AdoptRule
     """
     depth = found.depth
-    bare = np.where(found.mask, 1 - rise(matched, rule.adopted_full, rule.adopted_from), 0.0)
+    bare = np.where(found.mask, 1 - rise(matched, rule.adopted_full, rule.adopted_until), 0.0)
     if not bare.any():
         return depth
     points = np.zeros((2, *depth.shape))  # their number, and the sum of their relative offsets

@@ -33,14 +33,14 @@ class TrustRule:
     free_textured: float
     textured_from: float
     textured_full: float
-    agreed_from: float
-    agreed_full: float
+    aslant_agree_from: float
+    aslant_agree_full: float
     aslant_from: float
     aslant_full: float
     mirrored_height: float
     hollow_agree: float
     round_full: float
-    round_from: float
+    round_until: float
 
 
 def share_matched(
@@ -112,7 +112,7 @@ def trust_aslant(trust: np.ndarray, agree: np.ndarray, cosine: np.ndarray, rule:
         Between the surface's normal and the ray to it, by which votes are multiplied (`facing_cosine`).
     rule : TrustRule
     """
-    agreed = rise(agree.astype(np.float64), rule.agreed_from, rule.agreed_full)
+    agreed = rise(agree.astype(np.float64), rule.aslant_agree_from, rule.aslant_agree_full)
     square = rise(cosine, rule.aslant_from, rule.aslant_full)
     return np.maximum(trust, agreed * square / np.maximum(cosine, 1e-3)).astype(np.float32)
 
@@ -180,4 +180,4 @@ def rate_roundness(agreed: int, deep: int, sureness: float, rule: TrustRule) -> 
         Of the object's depth, in [0, 1] (`rate_sureness`).
     rule : TrustRule
     """
-    return float((1 - sureness) * (1 - rise(agreed / max(deep, 1), rule.round_full, rule.round_from)))
+    return float((1 - sureness) * (1 - rise(agreed / max(deep, 1), rule.round_full, rule.round_until)))
