@@ -31,7 +31,7 @@ config: setup
 results: setup
 	$(BIN)/python -m threedfs.run_end.publish
 
-# Without AVX-512, whose last bits are others: the same forest on every processor that has AVX2.
+# Without AVX-512, which rounds differently, so that the forest does not depend on whether the processor has it.
 contours: export OPENCV_CPU_DISABLE = AVX512-SKX
 contours: export NPY_DISABLE_CPU_FEATURES = X86_V4 AVX512_ICL AVX512_SPR
 contours: setup

@@ -28,7 +28,7 @@ _BYTES_PER_VOXEL = {
 }
 """At most, over a cube: the highest peaks of the benchmark's jobs are 0.37 to 0.78 of what these give."""
 
-_BYTES_PER_PIXEL = {"segment": 80, "spectral_matting": 5, "surface": 20, "volumetric_cut": 34, "consistency": 40}
+_BYTES_PER_PIXEL = {"segment": 80, "spectral_matting": 5, "surface": 20, "volumetric_cut": 50, "consistency": 40}
 """Of every keyframe, which these stages hold all at once; surface holds masks of three times as many frames."""
 
 _BYTES_PER_PIXEL_AT_WORK = {

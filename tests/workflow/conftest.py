@@ -27,7 +27,7 @@ SIGNATURES = {
     "scale": ("frames poses mesh support", "scale", "known"),
     "keyframes": ("frames poses points masks", "keyframes", ""),
     "shrink": ("frames poses keyframes", "crops views", ""),
-    "crops": ("source poses points keyframes support", "crops views", ""),
+    "crops": ("source poses points keyframes support", "crops views", "frame_far_factor"),
     "semidense": ("crops keyframes poses points", "semidense", "keyframe"),
     "edges": ("crops keyframes", "edges", "keyframe"),
     "stereo": ("crops keyframes semidense support", "stereo", "keyframe"),

@@ -141,6 +141,8 @@ def finish_run(run: Run, unfinished: Collection[str] = ()) -> str:
     _write_all(run.results / "plots", ".svg", _draw_plots(scores))
     said = tuple(row for row in (*own, *costs) if row.sequence in run.datasets)
     told = _summarise(Scores(said, run.datasets, run.methods, tuple(failures), run.seed))
+    if failures:
+        collected.unlink(missing_ok=True)
     return f"\n{told}\n\nTables and plots: {run.results}/tables, {run.results}/plots\n{refused}"
 
 
@@ -197,7 +199,13 @@ def report_run(run: Run, unfinished: Collection[str], note: Callable[[str], obje
     """
     failures = find_failures(run.results, run.started)
     failed = {failure.sequence for failure in failures}
-    due = [run.results / name for name in run.datasets if name in failed or _is_due(run.results / name, run.methods)]
+    collected = run.results / "tables" / "metrics.csv"
+    complete = not failures and not unfinished and collected.is_file()
+    due = [
+        run.results / name
+        for name in run.datasets
+        if name in failed or _is_due(run.results / name, run.methods, complete)
+    ]
     own = _read_own(run, unfinished)
 
     def describe(sequence: str):
@@ -223,13 +231,14 @@ def report_run(run: Run, unfinished: Collection[str], note: Callable[[str], obje
     write_index_page(run.results, run.datasets, [*own, *_read_others(run)])
 
 
-def _is_due(folder: Path, methods: Sequence[str]) -> bool:
+def _is_due(folder: Path, methods: Sequence[str], complete: bool) -> bool:
     """Say whether a sequence, none of whose jobs failed, needs another report.
 
-    It does if it has newer results, if methods of now are others, and if its report tells of a failure.
+    It does if it has newer results, if methods of now are others, and if its report tells of a failure though all
+    that the run is to make is there.
     """
     summary = read_summary(folder)
-    known = summary is not None and summary.methods == tuple(methods) and not summary.failures
+    known = summary is not None and summary.methods == tuple(methods) and not (complete and summary.failures)
     return _is_newer(folder) or ((folder / "report.html").is_file() and not known)
 
 

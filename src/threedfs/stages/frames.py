@@ -48,6 +48,6 @@ def run(*, source: Path, masks: Path | None, frames: Path, params: FramesParams,
         skipped=lambda: reader.skipped,
     )
     job.progress.note(
-        f"{reader.taken} of {len(scanned.names)} frames taken, {len(annotated)} with a mask; "
+        f"{reader.taken} of {len(scanned.names) + scanned.unreadable} frames taken, {len(annotated)} with a mask; "
         f"{reader.blank} blank, {reader.skipped} not decodable"
     )

@@ -17,7 +17,7 @@ from threedfs.store.kernels import ENDING
 from threedfs.store.records import BadRecord, digests_of, parse_record
 
 KEPT_DAYS = 30.0
-"""Kernels that were not read for so long are taken to be of code that is gone."""
+"""Kernels, and notes on given files, that were not used for so long are taken to be of what is gone."""
 _ABANDONED = 86400.0  # seconds after which work in progress is that of a killed job
 _PARTS = ("objects", "actions", "digests", "kernels")
 
