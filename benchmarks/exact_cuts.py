@@ -1,12 +1,12 @@
 """Cuts of the images by colour with one thing exact at a time, to see what stands between them and true masks.
 
-    python benchmarks/exact_cuts.py results/NAME [results/NAME ...] [--change KEY=VALUE ...]
+    python benchmarks/exact_cuts.py results/NAME [results/NAME ...] [--change KEY=VALUE ... [--together]]
 
 Takes a finished run of a rendered take with `keyframes_at_truth: true`, gc_2d and gc_2d3d_pixel. Cuts its
 images again, alone (2D GC of Section 4.3) and jointly with the voxels, with the run's own settings: as it is; with
 superpixels split where they straddle the true outline; with colours learnt in every round from true masks; with both.
 Prints the mean IoU over the keyframes, in crops, beside the best that the superpixels allow. With changes to settings
-of `segment`, each alone, it prints the IoU with these instead.
+of `segment` it prints the IoU as it is and with these instead, each alone or all together.
 """
 
 from __future__ import annotations
@@ -103,15 +103,14 @@ def mean_iou(masks: Mapping[str, np.ndarray], truth: Mapping[str, np.ndarray]) -
     return float(np.mean([intersection_over_union(masks[name], own) for name, own in truth.items()]))
 
 
-def measure_changes(folder: Path, changes: list[str]) -> dict[str, float]:
-    """Return the IoU of both cuts as they are, and with each change alone."""
+def measure_changes(folder: Path, changes: list[str], together: bool) -> dict[str, float]:
+    """Return the IoU of both cuts as they are, and with each change alone, or with all of them."""
     truth, found = read_true_masks(folder), {}
-    for change in ["", *changes]:
-        key, _, value = change.partition("=")
-        settings = {key: yaml.safe_load(value)} if change else {}
+    for made in [[], changes] if together else [[], *([change] for change in changes)]:
+        settings = {key: yaml.safe_load(value) for key, _, value in (change.partition("=") for change in made)}
         for cut in ("images", "joint"):
             masks = cut_anew(folder, cut, folder / "10_segment/superpixels", None, settings)
-            found[f"{cut} {change}".strip()] = mean_iou(masks, truth)
+            found[" ".join([cut, *made])] = mean_iou(masks, truth)
     return found
 
 
@@ -143,12 +142,15 @@ def main() -> None:
     parser = argparse.ArgumentParser(description="Cut images by colour with one thing exact at a time.")
     parser.add_argument("folders", nargs="+", type=Path)
     parser.add_argument("--change", nargs="+", default=[], metavar="KEY=VALUE")
+    parser.add_argument("--together", action="store_true", help="make all changes at once")
     given = parser.parse_args()
+    if given.together and not given.change:
+        parser.error("--together: expected --change with what is to change at once, got none")
     for change in given.change:
         if change.partition("=")[0] not in vars(SegmentParams()) or "=" not in change:
             parser.error(f"--change: expected a parameter of segment and its value, KEY=VALUE, got {change}")
     for folder in given.folders:
-        found = measure_changes(folder, given.change) if given.change else measure(folder)
+        found = measure_changes(folder, given.change, given.together) if given.change else measure(folder)
         print(folder.name, {what: round(value, 3) for what, value in found.items()}, flush=True)
 
 
