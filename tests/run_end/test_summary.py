@@ -2,7 +2,7 @@
 
 import pytest
 
-from threedfs.run_end.finish import _is_due
+from threedfs.run_end.due import is_due
 from threedfs.run_end.summary import Summary, read_summary, write_summary
 
 
@@ -22,8 +22,8 @@ def test_none_is_read_where_there_is_none_or_another(tmp_path, text):
 def test_a_report_of_a_failure_is_made_anew_when_all_is_there(tmp_path):
     (tmp_path / "report.html").touch()
     write_summary(tmp_path, Summary(methods=("surface",), failures=("scale: no tag.",)))
-    assert _is_due(tmp_path, ["surface"], complete=True)
-    assert not _is_due(tmp_path, ["surface"], complete=False)
+    assert is_due(tmp_path, ["surface"], complete=True)
+    assert not is_due(tmp_path, ["surface"], complete=False)
     write_summary(tmp_path, Summary(methods=("surface",)))
-    assert not _is_due(tmp_path, ["surface"], complete=True)
-    assert _is_due(tmp_path, ["fused_sdf"], complete=False)
+    assert not is_due(tmp_path, ["surface"], complete=True)
+    assert is_due(tmp_path, ["fused_sdf"], complete=False)

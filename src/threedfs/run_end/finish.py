@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import defaultdict
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -28,23 +28,15 @@ from threedfs.io.atomic import atomic
 from threedfs.io.metrics import read_metrics, write_metrics
 from threedfs.params.configuration import METHODS
 from threedfs.params.schema import STAGES
+from threedfs.run_end.due import is_due
 from threedfs.run_end.index import write_index_page
 from threedfs.run_end.logs import find_failures, read_actions
-from threedfs.run_end.summary import read_summary
 from threedfs.store.files import remove
 
 _SCORING = {"evaluate", "evaluate_reconstruction", "photographs", "depth_trial", "depth_experiment", "collect"}
 """Stages that compare and make nothing."""
 _SCORES = ("12_evaluate/**/*.csv", "12_depth_experiment/metrics.csv")
 """Tables of figures of a sequence."""
-_WATCHED = (
-    "02_poses/poses.json",
-    "11_object/*/mesh.ply",
-    "11_object/scale.json",
-    "12_evaluate/**/*.csv",
-    "**/logs/**/*.log",
-)
-"""Files of a sequence that its report is older than, if it is out of date."""
 
 TABLES = {
     "iou": overlap_tables,
@@ -91,6 +83,11 @@ class Run:
     changes: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     versions: Mapping[str, str] = field(default_factory=dict)
 
+    @property
+    def collected(self) -> Path:
+        """The table of all figures, which rule collect makes; a run with a failure takes it away."""
+        return self.results / "tables" / "metrics.csv"
+
 
 def finish_run(run: Run, unfinished: Collection[str] = ()) -> str:
     """Write the tables and plots of the sequences that have their figures; return what the run says at its end.
@@ -113,15 +110,14 @@ def finish_run(run: Run, unfinished: Collection[str] = ()) -> str:
         Only the failures, if the run was not to collect figures.
     """
     failures = find_failures(run.results, run.started)
-    collected = run.results / "tables" / "metrics.csv"
     refused = "".join(
         f"threedfs: {failure.stage} of {' '.join(filter(None, (failure.sequence, failure.item)))}: {failure.sentence}\n"
         for failure in failures
     )
     _remove_stale(run, unfinished, {failure.sequence for failure in failures})
-    if str(collected) in unfinished:
-        collected.unlink(missing_ok=True)
-    elif not collected.is_file() or collected.stat().st_mtime < run.started:
+    if str(run.collected) in unfinished:
+        run.collected.unlink(missing_ok=True)
+    elif not run.collected.is_file() or run.collected.stat().st_mtime < run.started:
         return refused
     own, others = _read_own(run, unfinished), _read_others(run)
     datasets = {**run.datasets, **{row.sequence: row.dataset for row in others}}
@@ -142,7 +138,7 @@ def finish_run(run: Run, unfinished: Collection[str] = ()) -> str:
     said = tuple(row for row in (*own, *costs) if row.sequence in run.datasets)
     told = _summarise(Scores(said, run.datasets, run.methods, tuple(failures), run.seed))
     if failures:
-        collected.unlink(missing_ok=True)
+        run.collected.unlink(missing_ok=True)
     return f"\n{told}\n\nTables and plots: {run.results}/tables, {run.results}/plots\n{refused}"
 
 
@@ -199,12 +195,11 @@ def report_run(run: Run, unfinished: Collection[str], note: Callable[[str], obje
     """
     failures = find_failures(run.results, run.started)
     failed = {failure.sequence for failure in failures}
-    collected = run.results / "tables" / "metrics.csv"
-    complete = not failures and not unfinished and collected.is_file()
+    complete = not failures and not unfinished and run.collected.is_file()
     due = [
         run.results / name
         for name in run.datasets
-        if name in failed or _is_due(run.results / name, run.methods, complete)
+        if name in failed or is_due(run.results / name, run.methods, complete)
     ]
     own = _read_own(run, unfinished)
 
@@ -229,24 +224,6 @@ def report_run(run: Run, unfinished: Collection[str], note: Callable[[str], obje
 
         write_reports(due, describe, note)
     write_index_page(run.results, run.datasets, [*own, *_read_others(run)])
-
-
-def _is_due(folder: Path, methods: Sequence[str], complete: bool) -> bool:
-    """Say whether a sequence, none of whose jobs failed, needs another report.
-
-    It does if it has newer results, if methods of now are others, and if its report tells of a failure though all
-    that the run is to make is there.
-    """
-    summary = read_summary(folder)
-    known = summary is not None and summary.methods == tuple(methods) and not (complete and summary.failures)
-    return _is_newer(folder) or ((folder / "report.html").is_file() and not known)
-
-
-def _is_newer(folder: Path) -> bool:
-    """Say whether results of a sequence are newer than its report, or there are some and it has none."""
-    page = folder / "report.html"
-    made = max((path.stat().st_mtime for pattern in _WATCHED for path in folder.glob(pattern)), default=None)
-    return made is not None and (not page.is_file() or page.stat().st_mtime < made)
 
 
 def _lay_out(scores: Scores, makers: Mapping[str, Callable[[Scores, str], list[Table]]]) -> dict[str, str]:

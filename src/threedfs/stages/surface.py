@@ -232,9 +232,8 @@ def _outline(
     reach = ramp * scene.cut.grid.spacing
 
     def cut(name: str) -> np.ndarray:
-        image, valid, depth = scene.images.image(name), scene.valid[name], None
-        if name in told:
-            depth = scene.read_depth(name)
+        image, valid = scene.images.image(name), scene.valid[name]
+        depth = scene.read_depth(name) if name in told else None
         return cut_around(surface, within[name], image, valid, reach, scene.appearance, scene.support, rule, depth)
 
     found = job.progress.track(map_ahead(cut, within, threads=job.threads), "frame", len(within))
