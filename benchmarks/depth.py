@@ -24,7 +24,7 @@ from scipy.sparse.linalg import spsolve
 
 from threedfs.depth.bending import HALF_OFFSETS, assemble_prior
 from threedfs.depth.candidates import space_candidates
-from threedfs.depth.cost_volume import compute_cost_volume, plane_homography
+from threedfs.depth.cost_volume import compute_cost_volume, plane_homographies
 from threedfs.depth.solver import optimise_depth
 from threedfs.depth.weights import coupling_schedule, photometric_confidence, smoothness_at
 from threedfs.depth.zncc import MISSING
@@ -93,10 +93,10 @@ def reference_cost(views: list[View], images: dict[str, np.ndarray], candidates:
     variance = np.maximum(box(grey * grey) - mean * mean, 0) + FLOOR
     cost = np.zeros((len(candidates), *grey.shape), np.float32)
     for view in views[1:]:
-        for index, depth in enumerate(candidates):
+        for index, homography in enumerate(plane_homographies(views[0], view, candidates)):
             warped = cv2.warpPerspective(
                 images[view.name],
-                plane_homography(views[0], view, depth),
+                homography,
                 grey.shape[::-1],
                 flags=cv2.INTER_LINEAR | cv2.WARP_INVERSE_MAP,
                 borderMode=cv2.BORDER_CONSTANT,

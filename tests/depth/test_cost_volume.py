@@ -8,7 +8,7 @@ import pytest
 import scenes
 
 from threedfs.depth.candidates import space_candidates
-from threedfs.depth.cost_volume import choose_patch_radius, compute_cost_volume, plane_homography
+from threedfs.depth.cost_volume import choose_patch_radius, compute_cost_volume, plane_homographies
 from threedfs.depth.evidence import gather_evidence
 from threedfs.depth.zncc import MISSING, accumulate_cost, describe_patches, prepare_grey
 from threedfs.geometry.projection import backproject, project
@@ -72,12 +72,13 @@ def test_missing_pixels_are_charged():
     assert np.all(cost[0] == 0.5) and np.all(cost[:, -1] == 0.5)
 
 
-def test_homography_agrees_with_projection():
+def test_homographies_agree_with_projection():
     reference, neighbour = scenes.views()[:2]
     pixel = np.array([20.0, 30.0])
-    expected, _ = project(neighbour, backproject(reference, pixel, np.array(1.3)))
-    mapped = plane_homography(reference, neighbour, 1.3) @ [*pixel, 1]
-    assert np.allclose(mapped[:2] / mapped[2], expected, atol=1e-10)
+    depths = np.array([0.8, 1.3, 4.0])
+    expected = [project(neighbour, backproject(reference, pixel, depth))[0] for depth in depths]
+    mapped = plane_homographies(reference, neighbour, depths) @ [*pixel, 1]
+    assert np.allclose(mapped[:, :2] / mapped[:, 2:], expected, atol=1e-10)
 
 
 def test_least_cost_lies_at_the_true_depth():

@@ -12,12 +12,12 @@ from threedfs.geometry.rigid import invert
 from threedfs.types import View
 
 
-def plane_homography(reference: View, neighbour: View, depth: float) -> np.ndarray:
-    """Return the (3, 3) map from reference pixels to neighbour pixels for the plane z = `depth` of the reference."""
+def plane_homographies(reference: View, neighbour: View, depths: np.ndarray) -> np.ndarray:
+    """Return (D, 3, 3) maps from reference pixels to neighbour pixels for the planes z = `depths` of the reference."""
     neighbour_from_reference = neighbour.cam_from_world @ invert(reference.cam_from_world)
-    through_plane = neighbour_from_reference[:3, :3].copy()
-    through_plane[:, 2] += neighbour_from_reference[:3, 3] / depth
-    return neighbour.camera.px_from_cam @ through_plane @ np.linalg.inv(reference.camera.px_from_cam)
+    through_planes = np.tile(neighbour_from_reference[:3, :3], (len(depths), 1, 1))
+    through_planes[:, :, 2] += neighbour_from_reference[:3, 3] / np.asarray(depths)[:, None]
+    return neighbour.camera.px_from_cam @ through_planes @ np.linalg.inv(reference.camera.px_from_cam)
 
 
 def choose_patch_radius(neighbour_angle: float) -> int:
@@ -88,8 +88,9 @@ def compute_cost_volume(
     cost = np.zeros((len(candidates), height, width), np.float32)
     for neighbour in track(neighbours):
         image = read_grey(neighbour)
-        for index, depth in enumerate(candidates):
-            neighbour_from_reference = plane_homography(reference, neighbour, depth)
+        for plane_cost, neighbour_from_reference in zip(
+            cost, plane_homographies(reference, neighbour, candidates), strict=True
+        ):
             cv2.warpPerspective(
                 image,
                 neighbour_from_reference,
@@ -110,7 +111,7 @@ def compute_cost_volume(
                 np.float32(missing_cost),
                 column,
                 patch,
-                cost[index],
+                plane_cost,
             )
     cost /= np.float32(len(neighbours))
     return cost
