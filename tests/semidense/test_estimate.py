@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from threedfs.params.semidense import SemidenseParams
+from threedfs.semidense.epipolar import SearchRule
 from threedfs.semidense.estimate import FusionRule, estimate_semidense, order_by_baseline
-from threedfs.semidense.observe import SearchRule
 
 
 def estimate(scene, sparse=None, valid=None, **changes):

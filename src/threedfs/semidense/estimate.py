@@ -8,8 +8,9 @@ from typing import NamedTuple
 import numpy as np
 
 from threedfs.geometry.projection import inside, project
+from threedfs.semidense.epipolar import TEMPLATE_MARGIN, SearchRule
 from threedfs.semidense.gradient import find_textured, image_gradient, to_grey
-from threedfs.semidense.observe import TEMPLATE_MARGIN, SearchRule, observe_neighbour
+from threedfs.semidense.observe import observe_neighbour
 from threedfs.semidense.pair import relate
 from threedfs.semidense.prior import spread_sparse
 from threedfs.semidense.regularise import regularise

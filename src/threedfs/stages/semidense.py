@@ -14,8 +14,8 @@ from threedfs.io.poses import read_poses
 from threedfs.job import Job
 from threedfs.params.rules import make_rule
 from threedfs.params.semidense import SemidenseParams
+from threedfs.semidense.epipolar import SearchRule
 from threedfs.semidense.estimate import FusionRule, estimate_semidense, order_by_baseline
-from threedfs.semidense.observe import SearchRule
 
 
 def run(

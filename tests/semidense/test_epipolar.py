@@ -9,8 +9,7 @@ import pytest
 
 from threedfs.geometry.projection import backproject, project
 from threedfs.params.semidense import SemidenseParams
-from threedfs.semidense.gradient import find_textured, image_gradient, to_grey
-from threedfs.semidense.observe import (
+from threedfs.semidense.epipolar import (
     FOUND,
     NOT_SEARCHED,
     TEMPLATE_MARGIN,
@@ -19,6 +18,7 @@ from threedfs.semidense.observe import (
     _compare,
     search_line,
 )
+from threedfs.semidense.gradient import find_textured, image_gradient, to_grey
 from threedfs.semidense.pair import relate
 
 PARAMS = SemidenseParams()
