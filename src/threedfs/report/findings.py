@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 
@@ -64,99 +64,128 @@ _LEAST_CONFIRMED, _MOST_HANDLES = 0.65, 12
 
 
 def judge(facts: Facts) -> list[Finding]:
-    """Return all checks, those that failed first.
+    """Return all checks of what is known, those that failed first.
 
     The limits are stricter than the gates that stop a run: what passes a gate by little is worth a look.
     """
-    share, quality = facts.posed / max(facts.frames, 1), facts.quality
-    found = [
-        Finding(
-            "frames placed",
-            f"{facts.posed} of {facts.frames}",
-            f"at least {_LEAST_POSED:.0%}",
-            share >= _LEAST_POSED,
-            f"Parts of the video could not be placed: {_SLOWER}.",
-        ),
-        Finding(
-            "widest side without a view",
-            f"{facts.widest_gap:.0f} degrees",
-            f"at most {_WIDEST_GAP:.0f}",
-            facts.widest_gap <= _WIDEST_GAP,
-            "The object was not filmed from there, so that side of the mesh is a guess: walk all the way around.",
-        ),
-    ]
-    if "triangulation_angle" in quality:
-        angle = quality["triangulation_angle"]
-        found.append(
-            Finding(
-                "angle between rays to a point",
-                f"{angle:.1f} degrees",
-                f"at least {_LEAST_ANGLE:.0f}",
-                angle >= _LEAST_ANGLE,
-                "The camera hardly moved around the object, so depth is uncertain: walk around it.",
-            )
-        )
-    if "reprojection_error" in quality:
-        error = quality["reprojection_error"]
-        found.append(
-            Finding(
-                "error of the cameras",
-                f"{error:.2f} pixels",
-                f"at most {_LARGEST_ERROR:.1f}",
-                error <= _LARGEST_ERROR,
-                "Something moved, or the phone's stabilisation bent the picture: keep the scene still, turn it off.",
-            )
-        )
-    if "step_ratio" in quality:
-        step = quality["step_ratio"]
-        found.append(
-            Finding(
-                "largest step of the camera over its usual step",
-                f"{step:.1f}",
-                f"at most {_LARGEST_STEP:.0f}",
-                step <= _LARGEST_STEP,
-                f"The path may jump: {_SLOWER}.",
-            )
-        )
-    if facts.margin_used is not None:
-        found.append(
-            Finding(
-                "room around the object in its box",
-                f"{max(0.0, 1 - facts.margin_used):.0%} free",
-                "more than 0 %",
-                facts.margin_used < 1,
-                "The object reaches the side of its box and may be cut off: raise locate.box_margin.",
-            )
-        )
-    found.append(
-        Finding(
-            "mesh",
-            f"{'closed' if facts.closed else 'open'}, in {facts.pieces} piece{'s' * (facts.pieces != 1)}",
-            "closed, in 1 piece",
-            facts.closed and facts.pieces == 1,
-            "A printer needs a closed mesh in one piece: repair it in a mesh editor, or use the method surface.",
-        )
+    found = [check(facts) for check in _CHECKS]
+    return sorted((finding for finding in found if finding is not None), key=lambda finding: finding.good)
+
+
+def _check_placed(facts: Facts) -> Finding:
+    return Finding(
+        "frames placed",
+        f"{facts.posed} of {facts.frames}",
+        f"at least {_LEAST_POSED:.0%}",
+        facts.posed / max(facts.frames, 1) >= _LEAST_POSED,
+        f"Parts of the video could not be placed: {_SLOWER}.",
     )
-    found.append(
-        Finding(
-            "handles and tunnels",
-            f"{facts.genus}",
-            f"at most {_MOST_HANDLES}",
-            facts.genus <= _MOST_HANDLES,
-            "The surface is full of tunnels where depth is wrong; matt spray or talcum helps on shiny things.",
-        )
+
+
+def _check_gap(facts: Facts) -> Finding:
+    return Finding(
+        "widest side without a view",
+        f"{facts.widest_gap:.0f} degrees",
+        f"at most {_WIDEST_GAP:.0f}",
+        facts.widest_gap <= _WIDEST_GAP,
+        "The object was not filmed from there, so that side of the mesh is a guess: walk all the way around.",
     )
-    if facts.confirmed is not None:
-        found.append(
-            Finding(
-                "surface that photographs agree on",
-                f"{facts.confirmed:.0%}",
-                f"at least {_LEAST_CONFIRMED:.0%}",
-                facts.confirmed >= _LEAST_CONFIRMED,
-                "Bare or shiny faces: the shape there comes from outlines alone. Use soft light, or matt spray.",
-            )
-        )
-    return sorted(found, key=lambda finding: finding.good)
+
+
+def _check_angle(facts: Facts) -> Finding | None:
+    angle = facts.quality.get("triangulation_angle")
+    if angle is None:
+        return None
+    return Finding(
+        "angle between rays to a point",
+        f"{angle:.1f} degrees",
+        f"at least {_LEAST_ANGLE:.0f}",
+        angle >= _LEAST_ANGLE,
+        "The camera hardly moved around the object, so depth is uncertain: walk around it.",
+    )
+
+
+def _check_cameras(facts: Facts) -> Finding | None:
+    error = facts.quality.get("reprojection_error")
+    if error is None:
+        return None
+    return Finding(
+        "error of the cameras",
+        f"{error:.2f} pixels",
+        f"at most {_LARGEST_ERROR:.1f}",
+        error <= _LARGEST_ERROR,
+        "Something moved, or the phone's stabilisation bent the picture: keep the scene still, turn it off.",
+    )
+
+
+def _check_step(facts: Facts) -> Finding | None:
+    step = facts.quality.get("step_ratio")
+    if step is None:
+        return None
+    return Finding(
+        "largest step of the camera over its usual step",
+        f"{step:.1f}",
+        f"at most {_LARGEST_STEP:.0f}",
+        step <= _LARGEST_STEP,
+        f"The path may jump: {_SLOWER}.",
+    )
+
+
+def _check_box(facts: Facts) -> Finding | None:
+    if facts.margin_used is None:
+        return None
+    return Finding(
+        "room around the object in its box",
+        f"{max(0.0, 1 - facts.margin_used):.0%} free",
+        "more than 0 %",
+        facts.margin_used < 1,
+        "The object reaches the side of its box and may be cut off: raise locate.box_margin.",
+    )
+
+
+def _check_closed(facts: Facts) -> Finding:
+    return Finding(
+        "mesh",
+        f"{'closed' if facts.closed else 'open'}, in {facts.pieces} piece{'s' * (facts.pieces != 1)}",
+        "closed, in 1 piece",
+        facts.closed and facts.pieces == 1,
+        "A printer needs a closed mesh in one piece: repair it in a mesh editor, or use the method surface.",
+    )
+
+
+def _check_handles(facts: Facts) -> Finding:
+    return Finding(
+        "handles and tunnels",
+        f"{facts.genus}",
+        f"at most {_MOST_HANDLES}",
+        facts.genus <= _MOST_HANDLES,
+        "The surface is full of tunnels where depth is wrong; matt spray or talcum helps on shiny things.",
+    )
+
+
+def _check_confirmed(facts: Facts) -> Finding | None:
+    if facts.confirmed is None:
+        return None
+    return Finding(
+        "surface that photographs agree on",
+        f"{facts.confirmed:.0%}",
+        f"at least {_LEAST_CONFIRMED:.0%}",
+        facts.confirmed >= _LEAST_CONFIRMED,
+        "Bare or shiny faces: the shape there comes from outlines alone. Use soft light, or matt spray.",
+    )
+
+
+_CHECKS: tuple[Callable[[Facts], Finding | None], ...] = (
+    _check_placed,
+    _check_gap,
+    _check_angle,
+    _check_cameras,
+    _check_step,
+    _check_box,
+    _check_closed,
+    _check_handles,
+    _check_confirmed,
+)
 
 
 def doubt_truth(sentences: list[str]) -> list[Finding]:
