@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import cho_solve_banded, cholesky_banded
 
 from threedfs.depth.bending import HALF_OFFSETS
 from threedfs.depth.galerkin import BORDER, Level, flat_offsets
@@ -47,7 +47,7 @@ class Preconditioner:
             self._matrices.append(matrix)
             self._smoothers.append((inverse, np.float32(_FIRST_RATE / radius), np.float32(_SECOND_RATE / radius)))
             self._scratch.append(np.zeros((6, planes.shape[1]), np.float32))
-        self._coarsest = cho_factor(_dense(self._matrices[-1][0].astype(np.float64), *self._shapes[-1]))
+        self._coarsest = cholesky_banded(_lower_bands(self._matrices[-1][0], *self._shapes[-1]), lower=True)
 
     def apply(self, residual: np.ndarray) -> np.ndarray:
         """Return an approximate solution for a flat bordered residual; symmetric and positive definite.
@@ -63,7 +63,8 @@ class Preconditioner:
         solution, step, residual = self._scratch[index][:3]
         if index == len(self._shapes) - 1:
             inner = _inside(right, height).ravel().astype(np.float64)
-            _inside(solution, height)[:] = cho_solve(self._coarsest, inner, check_finite=False).reshape(height, width)
+            exact = cho_solve_banded((self._coarsest, True), inner, overwrite_b=True, check_finite=False)
+            _inside(solution, height)[:] = exact.reshape(height, width)
             return solution
         grid = *self._matrices[index], *self._smoothers[index]
         coarse_height, coarse_width = self._shapes[index + 1]
@@ -86,19 +87,15 @@ def _inside(flat: np.ndarray, height: int) -> np.ndarray:
     return flat.reshape(height + 2 * BORDER, -1)[BORDER:-BORDER, BORDER:-BORDER]
 
 
-def _dense(planes: np.ndarray, height: int, width: int) -> np.ndarray:
-    stride = width + 2 * BORDER
-    matrix = np.zeros((planes.shape[1], planes.shape[1]))
-    inner = (np.arange(height)[:, None] + BORDER) * stride + np.arange(width) + BORDER
-    inner = inner.ravel()
-    for k in range(13):
-        offset = HALF_OFFSETS[k][0] * stride + HALF_OFFSETS[k][1]
-        matrix[inner, inner + offset] += planes[k, inner]
-        if k:
-            matrix[inner + offset, inner] += planes[k, inner]
-    matrix = matrix[np.ix_(inner, inner)]
-    matrix[np.diag_indices_from(matrix)] *= 1 + 1e-10
-    return matrix
+def _lower_bands(planes: np.ndarray, height: int, width: int) -> np.ndarray:
+    """Return the diagonals (2 W + 3, H W) float64, main one first, of the matrix over the rows of a grid."""
+    bands = np.zeros((2 * width + 3, height * width))
+    column = np.arange(width)
+    for (down, right), plane in zip(HALF_OFFSETS, planes, strict=True):
+        coupled = _inside(plane, height)[: max(height - down, 0)] * ((column + right >= 0) & (column + right < width))
+        bands[down * width + right, : coupled.size] += coupled.ravel()
+    bands[0] *= 1 + 1e-10
+    return bands
 
 
 @njit(cache=True)
