@@ -12,8 +12,14 @@ _OFFERED = {
 }
 
 
+def __dir__() -> list[str]:
+    return sorted([*_OFFERED, "__version__"])
+
+
 def __getattr__(name: str) -> Any:
     """Import what is offered when it is asked for: the jobs of a run need none of it."""
+    if name == "__version__":
+        return importlib.import_module("importlib.metadata").version("threedfs")
     if name not in _OFFERED:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     module, function = _OFFERED[name]

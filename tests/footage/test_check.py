@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from threedfs.cli.main import main
-from threedfs.footage.motion import sweep_angle
+from threedfs.footage.motion import Step, sweep_angle
 from threedfs.footage.verdict import BAD, GOOD, conclude, judge_film
 from threedfs.geometry.rigid import look_at
 
@@ -134,11 +134,20 @@ def test_photos_that_cannot_be_read_count_once(tmp_path, around, capsys):
     assert "12 photos" in said and "3 of 12 cannot be decoded" in said and "photos: 9" in said
 
 
+def test_photos_that_show_too_little_in_common_are_not_to_be_filmed_slower():
+    opinions = judge_film([], [Step(0, 0.0, 0.0, None)] * 9, seconds=None, frames=30)
+    (advice,) = [opinion.advice for opinion in opinions if opinion.what == "connection"]
+    assert "take more of them" in advice and "film" not in advice
+
+
 def test_what_is_no_film_is_refused_in_a_sentence(tmp_path, capsys):
     (tmp_path / "x.mp4").write_text("no film")
     assert main(["check", str(tmp_path / "x.mp4")]) == 1
     assert main(["check", str(tmp_path / "none.mp4")]) == 1
-    assert capsys.readouterr().err.count("threedfs: ") == 2
+    (tmp_path / "empty").mkdir()
+    assert main(["check", str(tmp_path / "empty")]) == 1
+    told = capsys.readouterr().err
+    assert told.count("threedfs: ") == 3 and "got a folder without such files" in told
 
 
 def test_the_way_around_is_that_of_the_turns():

@@ -7,8 +7,10 @@ from pathlib import Path
 import pytest
 import yaml
 
+import threedfs
 from threedfs.cli.main import main
 from threedfs.cli.request import name_sequence, read_settings
+from threedfs.cli.workflow import Outcome
 from threedfs.errors import UserError
 from threedfs.inputs.places import check_places
 from threedfs.params.command_line import read_scalars
@@ -19,7 +21,9 @@ ROOT = Path(__file__).resolve().parents[2]
 DEEP = "".join(f"{{a{level}: " for level in range(30)) + "1" + "}" * 30
 
 CASES = {
-    "unknown parameter": ("depth: {iteratons: 5}", "depth: unknown key iteratons"),
+    "unknown parameter": ("depth: {iteratons: 5}", "depth: unknown key iteratons; did you mean iterations?"),
+    "unknown stage": ("depht: {iterations: 5}", "unknown key depht; did you mean depth?"),
+    "parameter without its stage": ("smoothness_growth: 2", "smoothness_growth; it is a key of depth."),
     "wrong type": ("depth: {iterations: many}", "depth.iterations: expected integer, got 'many'"),
     "no such choice": ("depth: {prior: third_order}", "depth.prior: expected one of first_order"),
     "space in name": ("sequences: {a b: {source: config}}", "'a b' cannot name a sequence"),
@@ -231,6 +235,8 @@ def test_a_read_only_place_and_a_full_disk_are_told_apart(tmp_path, monkeypatch)
         (["run", ".", "--set", "video=a.mp4"], "videos are given without --set"),
         (["show", "nowhere"], "expected the report of a run, found none"),
         (["export", ".", "a.stl"], "expected the mesh of a run, found none"),
+        (["export", "nowhere", "a.stl"], "nowhere: expected the folder of a sequence, as results/my, found none"),
+        (["export", ".", "nowhere/a.stl"], "nowhere/a.stl: expected a folder to write into, found no nowhere"),
     ],
 )
 def test_the_command_refuses_in_one_sentence(words, sentence, capsys):
@@ -244,6 +250,22 @@ def test_the_command_refuses_cores_that_there_cannot_be(capsys):
             main(["run", ".", f"--cores={cores}"])
         assert end.value.code == 2
         assert f"expected a whole number of at least 1, got '{cores}'" in capsys.readouterr().err
+
+
+def test_what_is_refused_before_the_first_job_is_as_if_it_had_not_been_asked_for():
+    for fault, refused in {
+        "inputs of mug: mug.mp4: expected a video": True,
+        "configuration: unknown key depht": True,
+        "frames of mug: mug.mp4: expected a video": False,
+    }.items():
+        assert Outcome(1, False, (fault,), Path("run.txt")).refused is refused
+
+
+def test_the_package_tells_its_version_and_what_it_offers(capsys):
+    with pytest.raises(SystemExit) as end:
+        main(["--version"])
+    assert end.value.code == 0 and capsys.readouterr().out == f"threedfs {threedfs.__version__}\n"
+    assert dir(threedfs) == ["__version__", "open", "reconstruct"]
 
 
 def test_long_names_of_videos_are_cut_and_told_apart():

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import trimesh
 
-from threedfs.object.stand import stand_up, turn_y_up
+from threedfs.object.stand import place_upright, stand_up, turn_y_up
 from threedfs.types import Mesh, Plane
 
 
@@ -36,3 +36,12 @@ def test_up_is_y_where_it_was_z():
     assert turned.vertices.tolist() == [[0, 1, 0], [1, 0, 0], [0, 0, -1]]
     made = turn_y_up(Mesh(box.vertices, box.faces))
     assert np.isclose(trimesh.Trimesh(made.vertices, made.faces).volume, 6)
+
+
+def test_an_upright_mesh_is_scaled_and_not_turned():
+    """Exact: a box beside the origin, its sides as they were."""
+    box = trimesh.creation.box((1.0, 2.0, 4.0)).apply_translation([3.0, 5.0, 7.0])
+    placed = place_upright(Mesh(box.vertices, box.faces), 8.0)
+    assert placed.vertices.min(axis=0).tolist() == [-1, -2, 0] and placed.vertices.max(axis=0).tolist() == [1, 2, 8]
+    kept = place_upright(placed)
+    assert np.array_equal(kept.vertices, placed.vertices)

@@ -164,13 +164,20 @@ def test_a_scene_is_the_same_bytes_again(results, scene, tmp_path):
         (["--masks", "rgba"], "expected --scene with --masks"),
         (["--scene", "--height", "95mm"], "expected --scene or --height, got both"),
         (["--scene", "--faces", "500"], "expected --scene or --faces, got both"),
-        (["--scene", "--method", "tsdf"], "expected a mesh by the method tsdf of a run, found none"),
+        (["--scene", "--method", "tsdf"], "expected a mesh by the method tsdf, found"),
     ],
 )
 def test_words_that_do_not_go_together_are_refused(results, tmp_path, capsys, words, sentence):
     assert main(["export", str(results), str(tmp_path / "scene"), *words]) == 1
     assert sentence in capsys.readouterr().err
     assert not (tmp_path / "scene").exists()
+
+
+def test_a_file_in_the_way_of_a_scene_is_refused(results, tmp_path, capsys):
+    (tmp_path / "scene").write_text("mine")
+    assert main(["export", str(results), str(tmp_path / "scene"), "--scene"]) == 1
+    assert "scene: expected a folder to write a scene into, got a file" in capsys.readouterr().err
+    assert (tmp_path / "scene").read_text() == "mine"
 
 
 def test_frames_that_are_not_there_are_refused(tmp_path):

@@ -112,7 +112,7 @@ def test_it_is_replaced_by_the_same_bytes(results, tmp_path):
     [
         (["--faces", "500"], "expected --faces with a mesh"),
         (["--height", "tall"], "expected a length"),
-        (["--height", "9cm", "--method", "tsdf"], "expected a mesh file, found none"),
+        (["--height", "9cm", "--method", "tsdf"], "expected a mesh by the method tsdf, found one by surface"),
     ],
 )
 def test_what_cannot_be_is_refused(results, tmp_path, capsys, words, sentence):

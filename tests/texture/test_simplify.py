@@ -75,6 +75,16 @@ def test_sheets_that_meet_in_an_edge_are_parted():
     assert joined(simple).volume == pytest.approx(2, abs=1e-3)
 
 
+def test_shreds_are_dropped_and_cavities_stay():
+    """Exact: of two balls, one of which is a thousandth as large, one is left; a hollow is a part, too."""
+    whole, hollow = trimesh.creation.icosphere(4), trimesh.creation.icosphere(4, 0.3)
+    shred = trimesh.creation.icosphere(2, 0.001).apply_translation([2, 0, 0])
+    hollow.invert()
+    made = joined(simplify_mesh(make_mesh(trimesh.util.concatenate([whole, hollow, shred])), 1e-5))
+    assert made.body_count == 2 and made.is_watertight
+    assert made.volume == pytest.approx(whole.volume + hollow.volume, rel=1e-3)
+
+
 def test_a_mesh_that_is_not_closed_gives_none():
     """Rejection: one face is left out."""
     closed = ball(3)

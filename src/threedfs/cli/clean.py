@@ -93,7 +93,10 @@ def _find(out: Path, text: str) -> Path:
     if not re.fullmatch(SEQUENCE_NAME, name) or name in RUN_FILES or not folder.is_dir():
         raise UserError(f"clean: expected a sequence in {out}/results, found no {text}; correct it, or use --out.")
     if not _is_finished(folder):
-        raise UserError(f"clean: expected a finished sequence, but {name} is not: run it to its end first.")
+        raise UserError(
+            f"clean: expected a finished sequence, but {name} is not: run it to its end first, or "
+            f"delete {folder} if you do not need it."
+        )
     return folder
 
 

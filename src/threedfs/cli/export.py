@@ -93,21 +93,31 @@ def _export_mesh(arguments: argparse.Namespace) -> int:
     from threedfs.run_end.export import export, export_levels
 
     in_metres = arguments.file.suffix.lower() == ".glb"
+    unit = "m" if in_metres else "mm"
     size = None
     if arguments.height is not None:
         size = read_height(arguments.height) / (1000 if in_metres else 1)
+        _tell_other_size(arguments.results, arguments.height)
     if not arguments.faces:
         tall = export(arguments.results, size, arguments.file, arguments.method)
-        print(f"{arguments.file}: {tall:.4g} {'m' if in_metres else 'mm'} tall")
+        print(f"{arguments.file}: {tall:.4g} {unit} tall")
         return 0
-    levels = export_levels(arguments.results, size, arguments.file, arguments.faces, arguments.method)
+    tall, levels = export_levels(arguments.results, size, arguments.file, arguments.faces, arguments.method)
     for file, level in levels.items():
         mean, largest = (error * (1000 if in_metres else 1) for error in (level.mean_error, level.largest_error))
         print(
-            f"{file}: {len(level.mesh.faces)} faces, closed; the full mesh is {mean:.2g} mm away in the mean, "
-            f"{largest:.2g} mm at most"
+            f"{file}: {len(level.mesh.faces)} faces, closed, {tall:.4g} {unit} tall; the full mesh is {mean:.2g} mm "
+            f"away in the mean, {largest:.2g} mm at most"
         )
     return 0
+
+
+def _tell_other_size(results: Path, height: str) -> None:
+    """Say that the size which a run found is not used; it may have been forgotten."""
+    from threedfs.io.scales import find_scale
+
+    if find_scale(results) is not None:
+        print(f"--height {height} is used, not the size that the run of {results} found.")
 
 
 def _read_faces(text: str) -> tuple[int, ...]:

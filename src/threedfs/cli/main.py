@@ -8,6 +8,7 @@ import webbrowser
 from collections.abc import Sequence
 from pathlib import Path
 
+import threedfs
 from threedfs.cli import store
 from threedfs.cli.clean import add_clean
 from threedfs.cli.export import add_export
@@ -57,6 +58,7 @@ def _make_parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="threedfs", description="Film one object; get a closed mesh of it alone, and a mask in every keyframe."
     )
+    parser.add_argument("--version", action="version", version=f"threedfs {threedfs.__version__}")
     actions = parser.add_subparsers(required=True, metavar="COMMAND")
 
     run = actions.add_parser("run", help="reconstruct a video or a folder of photos")

@@ -50,8 +50,8 @@ class Outcome:
 
     @property
     def refused(self) -> bool:
-        """Say whether the configuration was refused, so that nothing was begun."""
-        return any(fault.startswith("configuration") for fault in self.faults)
+        """Say whether the configuration or what a sequence is given was refused, so that nothing was begun."""
+        return any(fault.startswith(("configuration", "inputs of ")) for fault in self.faults)
 
     def names(self, sequence: str) -> bool:
         """Say whether a fault is one of a sequence's: `STAGE of NAME ITEM: sentence`."""

@@ -112,7 +112,10 @@ def _judge_texture(looks: Sequence[Look]) -> Opinion:
 def _judge_motion(steps: Sequence[Step], video: bool) -> list[Opinion]:
     known = [step for step in steps if step.rotation is not None]
     lost = 1 - len(known) / len(steps)
-    advice = "Neighbouring frames show too little in common: film slower, keep the same scene in view and in focus."
+    if video:
+        advice = "Neighbouring frames show too little in common: film slower, keep the same scene in view and in focus."
+    else:
+        advice = "Neighbouring photos show too little in common: take more of them, nearer to each other and in focus."
     # photos need not be sorted by place
     worst = BAD if video else FAIR
     opinions = [

@@ -97,9 +97,10 @@ def scan_photos(folder: Path, progress: Progress) -> Photos:
                 f"grey, like depth maps{f', and {unreadable} that cannot be read' if unreadable else ''}; convert them "
                 "to 8 bits, or give the folder of the photos."
             )
+        found = f"in which none of {len(files)} such files can be read" if files else "without such files"
         raise UserError(
             f"{folder}: expected a video or a folder of photos ({', '.join(s[1:] for s in PHOTO_SUFFIXES)}), got a "
-            f"folder in which none of {len(files)} such files can be read{_name_others(folder)}."
+            f"folder {found}{_name_others(folder)}."
         )
     # The first in order of name wins a draw, so that the choice does not depend on the file system.
     shape = Counter(shapes[file] for file in readable).most_common(1)[0][0]

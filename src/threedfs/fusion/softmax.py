@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 from numba import njit, prange
-from scipy.ndimage import gaussian_filter
 
+from threedfs.blur import blur
 from threedfs.checks import check_shape
 from threedfs.fusion.view_fusion import ViewFusion
 from threedfs.fusion.view_sdf import invert_depth, measure_voxel, relate
@@ -161,7 +161,7 @@ class SoftMaximum(ViewFusion):
         """Return what is taken off the exponent of each pixel's vote, (H, W) float64."""
         trust = np.minimum(confidence.astype(np.float64) * facing, 1.0)
         if self._trust_blur > 0:
-            trust = gaussian_filter(trust, self._trust_blur)
+            trust = blur(trust, self._trust_blur)
         return self._distrust * (1.0 - trust)
 
     def result(self) -> tuple[np.ndarray, np.ndarray]:
@@ -216,8 +216,8 @@ def facing_cosine(camera: Camera, depth: np.ndarray) -> np.ndarray:
     Normals are those of the depth smoothed over a few pixels: the turn of the surface counts, not its noise.
     """
     known = np.isfinite(depth)
-    smooth = gaussian_filter(np.where(known, depth, 0.0).astype(np.float64), _NORMAL_SMOOTHING)
-    share = gaussian_filter(known.astype(np.float64), _NORMAL_SMOOTHING)
+    smooth = blur(np.where(known, depth, 0.0).astype(np.float64), _NORMAL_SMOOTHING)
+    share = blur(known.astype(np.float64), _NORMAL_SMOOTHING)
     smooth = np.divide(smooth, share, out=np.full(depth.shape, np.nan), where=share > 0.5)
     u, v = pixel_grid(camera)
     rays = np.stack([(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, np.ones_like(u)], axis=-1)

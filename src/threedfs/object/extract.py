@@ -66,9 +66,26 @@ def find_shells(mesh: Mesh) -> np.ndarray:
 
 def keep_largest_shell(mesh: Mesh) -> Mesh:
     """Keep that connected part of a closed mesh which encloses the largest volume."""
-    shell_of_vertex = find_shells(mesh)
-    shell_of_face = shell_of_vertex[mesh.faces[:, 0]]
-    best = int(np.argmax(np.bincount(shell_of_face, _volumes(mesh))))
-    kept = shell_of_vertex == best
+    shell = find_shells(mesh)
+    volume = np.bincount(shell[mesh.faces[:, 0]], _volumes(mesh))
+    return _keep_vertices(mesh, shell == np.argmax(volume))
+
+
+def drop_shreds(mesh: Mesh, least_share: float) -> Mesh:
+    """Drop connected parts of a closed mesh that enclose less than a share of the volume of the largest one.
+
+    Parameters
+    ----------
+    mesh : Mesh
+    least_share : float
+        Of volumes as they are, whichever way faces turn.
+    """
+    shell = find_shells(mesh)
+    volume = np.abs(np.bincount(shell[mesh.faces[:, 0]], _volumes(mesh), minlength=shell.max() + 1))
+    return _keep_vertices(mesh, volume[shell] >= least_share * volume.max())
+
+
+def _keep_vertices(mesh: Mesh, kept: np.ndarray) -> Mesh:
+    """Return the mesh of some vertices (V,) bool, all or none of each face's."""
     renumbered = np.cumsum(kept) - 1
-    return Mesh(mesh.vertices[kept], renumbered[mesh.faces[shell_of_face == best]])
+    return Mesh(mesh.vertices[kept], renumbered[mesh.faces[kept[mesh.faces[:, 0]]]])

@@ -25,11 +25,15 @@ def stand_up(mesh: Mesh, plane: Plane, height: float | None = None) -> Mesh:
     Mesh
         Its lowest point at z = 0, the middle of its box at x = y = 0; not mirrored.
     """
-    vertices = mesh.vertices @ axes_on(plane.normal).T
-    low, high = vertices.min(axis=0), vertices.max(axis=0)
+    return place_upright(Mesh(mesh.vertices @ axes_on(plane.normal).T, mesh.faces), height)
+
+
+def place_upright(mesh: Mesh, height: float | None = None) -> Mesh:
+    """Scale a mesh whose z points up to a height and put it over the origin, as `stand_up` does; not turned."""
+    low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     middle = (low + high) / 2
     scale = 1.0 if height is None else height / (high[2] - low[2])
-    return Mesh((vertices - [middle[0], middle[1], low[2]]) * scale, mesh.faces)
+    return Mesh((mesh.vertices - [middle[0], middle[1], low[2]]) * scale, mesh.faces)
 
 
 def height_on(mesh: Mesh, plane: Plane) -> float:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import difflib
 import math
 from collections.abc import Iterator, Mapping
 from typing import Any
@@ -217,9 +218,8 @@ def _explain(fault: jsonschema.ValidationError, start: str) -> str:
     limit, value = fault.validator_value, fault.instance
     match fault.validator:
         case "additionalProperties":
-            unknown = sorted(set(value) - set(fault.schema["properties"]))
-            known = ", ".join(sorted(fault.schema["properties"]))
-            return f"{where}: unknown key {', '.join(unknown)}; the keys here are {known}."
+            unknown = sorted(map(str, set(value) - set(fault.schema["properties"])))
+            return f"{where}: unknown key {', '.join(unknown)}; {_suggest_key(unknown[0], fault.schema['properties'])}"
         case "required":
             missing = sorted(set(limit) - set(value))
             return f"{where}: expected the key {', '.join(missing)}, found none; see config/README.md."
@@ -243,6 +243,15 @@ def _explain(fault: jsonschema.ValidationError, start: str) -> str:
             return explain_name(str(value), where, _named_by(path))
         case _:
             return f"{where}: {fault.message}; see config/README.md."
+
+
+def _suggest_key(unknown: str, known: Mapping[str, Any]) -> str:
+    """Say which key may have been meant, where a key of that name is, or else which keys there are."""
+    owners = [name for name, schema in known.items() if unknown in schema.get("properties", {})]
+    near = difflib.get_close_matches(unknown, known, n=1)
+    if owners:
+        return f"it is a key of {', '.join(owners)}."
+    return f"did you mean {near[0]}?" if near else f"the keys here are {', '.join(sorted(known))}."
 
 
 def _named_by(path: str) -> str:

@@ -23,6 +23,7 @@ from threedfs.io.poses import read_poses
 from threedfs.io.scales import find_scale
 from threedfs.object.silhouettes import draw_silhouette
 from threedfs.run_end.export_masks import mask_path_of, write_masks
+from threedfs.run_end.known import require_mesh
 from threedfs.types import Camera, Mesh, SparsePoints, View
 
 _CORNER = 0.5
@@ -57,15 +58,13 @@ def export_scene(
     UserError
         If the sequence has no cameras, frames or no such mesh.
     """
-    places = {
-        "cameras": sequence / "02_poses/poses.json",
-        "frames": sequence / "01_frames/frames.zarr.zip",
-        f"a mesh by the method {method}": sequence / "11_object" / method / "mesh.ply",
-    }
+    places = {"cameras": sequence / "02_poses/poses.json", "frames": sequence / "01_frames/frames.zarr.zip"}
+    if folder.exists() and not folder.is_dir():
+        raise UserError(f"{folder}: expected a folder to write a scene into, got a file; give another name.")
     for what, path in places.items():
         if not path.is_file():
             raise UserError(f"{path}: expected {what} of a run, found none; correct {sequence}, or run it first.")
-    posed, mesh = read_poses(places["cameras"]), read_mesh(sequence / "11_object" / method / "mesh.ply")
+    posed, mesh = read_poses(places["cameras"]), read_mesh(require_mesh(sequence, method))
     names = name_files([view.name for view in posed.views])
     _write_images(folder, names, posed.views, posed.distortion, read_frames(places["frames"]), mesh, masks)
     scale, points = find_scale(sequence), read_points(sequence / "02_poses/points.zarr.zip")

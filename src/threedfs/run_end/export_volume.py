@@ -12,6 +12,7 @@ from threedfs.io.meshes import read_mesh
 from threedfs.io.ome_zarr import write_ome_zarr
 from threedfs.io.scales import find_scale
 from threedfs.io.volumes import read_support, read_volume
+from threedfs.run_end.known import require_mesh
 
 _NOTES = {
     "quantity": "signed distance",
@@ -45,6 +46,8 @@ def export_volume(sequence: Path, folder: Path, height: float | None = None, met
     path = sequence / "07_fusion/object.zarr.zip"
     if not path.is_file():
         raise UserError(f"{path}: expected the field of a run, found none; correct {sequence}, or run it again.")
+    if not folder.absolute().parent.is_dir():
+        raise UserError(f"{folder}: expected a folder to write into, found no {folder.parent}; correct it, or make it.")
     volume = read_volume(path)
     metres = _metres_per_unit(sequence, height, method)
     scale = metres or 1.0
@@ -58,6 +61,6 @@ def _metres_per_unit(sequence: Path, height: float | None, method: str) -> float
     if height is None:
         scale = find_scale(sequence)
         return None if scale is None else scale.metres_per_unit
-    mesh = read_mesh(sequence / "11_object" / method / "mesh.ply")
+    mesh = read_mesh(require_mesh(sequence, method))
     along = mesh.vertices @ axes_on(read_support(sequence / "03_scene/support.json").plane.normal)[2]
     return height / float(np.ptp(along))

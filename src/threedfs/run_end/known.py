@@ -18,6 +18,28 @@ MASK_METHODS = tuple(dict.fromkeys(["surface", "gc_2d3d_pixel", "gc_2d", *MESH_M
 """Methods by whose masks one would look at, the best first."""
 
 
+def require_mesh(sequence: Path, method: str) -> Path:
+    """Return the path of a sequence's mesh by a method.
+
+    Raises
+    ------
+    UserError
+        If there is no such sequence, or it has no mesh by the method.
+    """
+    if not sequence.is_dir():
+        raise UserError(f"{sequence}: expected the folder of a sequence, as results/my, found none; correct it.")
+    path = sequence / "11_object" / method / "mesh.ply"
+    others = sorted(mesh.parent.name for mesh in sequence.glob("11_object/*/mesh.ply"))
+    if path.is_file():
+        return path
+    if others:
+        raise UserError(
+            f"{sequence}: expected a mesh by the method {method}, found {'one' if len(others) == 1 else 'those'} by "
+            f"{', '.join(others)}; correct --method, or run that method first."
+        )
+    raise UserError(f"{path}: expected the mesh of a run, found none; run the sequence first.")
+
+
 @dataclass(frozen=True)
 class Known:
     """What a run left, None where it did not come so far.

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from numba import njit
-from scipy.ndimage import gaussian_filter
 
+from threedfs.blur import blur
 from threedfs.geometry.transfer import px_from_px, transfer
 from threedfs.ramp import rise
 from threedfs.surface.keyframe_depth import KeyframeDepth
@@ -71,7 +71,7 @@ def adopt_depth(found: KeyframeDepth, matched: np.ndarray, lent: Iterable[LentDe
     Parameters
     ----------
     found : KeyframeDepth
-    matched : (H, W) float64
+    matched : (H, W) float32
         Share of matches around (`share_matched`).
     lent : iterable of LentDepth
         Of the other views.
@@ -95,8 +95,8 @@ def adopt_depth(found: KeyframeDepth, matched: np.ndarray, lent: Iterable[LentDe
             points,
         )
     reach = rule.adopted_reach * found.length
-    number, offset = (gaussian_filter(item, reach) for item in points)
-    open_to_it = gaussian_filter((bare > 0).astype(np.float64), reach)
+    number, offset = (blur(item, reach) for item in points)
+    open_to_it = blur((bare > 0).astype(np.float64), reach)
     share = bare * np.minimum(1, number / np.maximum(_ENOUGH * open_to_it, 1e-3))
     return (depth * (1 + share * offset / np.maximum(number, 1e-6))).astype(np.float32)
 

@@ -103,24 +103,24 @@ def confirm_depth(
     agreed, deep = sum(look.agreed for look in first.values()), sum(look.deep for look in first.values())
     roundness = rate_roundness(agreed, deep, sureness, trust)
 
-    def adopt_of(name: str) -> tuple[np.ndarray, np.ndarray]:
+    def adopt_of(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         found = read(name)
         others = (look.lent for other, look in first.items() if other != name)
-        matched = _match(found, sureness, trust)
-        depth = adopt_depth(found, matched, others, adopt)
-        return depth, trust_depth(found.agree, found.confidence, matched, trust, 1 - roundness)
+        near = _match(found, sureness, trust)
+        depth = adopt_depth(found, near, others, adopt)
+        return depth, near, trust_depth(found.agree, found.confidence, near, trust, 1 - roundness)
 
     adopted: dict[str, np.ndarray] = {}
-    for name, (depth, trusted) in zip(views, map_ahead(adopt_of, views, threads=threads), strict=True):
-        adopted[name], own[name] = depth, trusted
+    matched: dict[str, np.ndarray] = {}
+    for name, found in zip(views, map_ahead(adopt_of, views, threads=threads), strict=True):
+        adopted[name], matched[name], own[name] = found
     fused, clip_distance = start(sureness)
     final: dict[str, np.ndarray] = {}
 
     def vote_of(name: str):
         found, depth = read(name), adopted[name]
         believed = trust_aslant(own[name], found.agree, facing_cosine(found.view.camera, depth), trust)
-        matched = _match(found, sureness, trust)
-        free = trust_free(believed, found.too_far, matched, len(views), sureness, trust)
+        free = trust_free(believed, found.too_far, matched[name], len(views), sureness, trust)
         mirrored = find_mirrored(found.view, found.mask, found.depth, support, trust.mirrored_height)
         share = believe_mirrored(mirrored, sureness)
         final[name] = own[name] * share

@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import gaussian_filter
 
+from threedfs.blur import blur
 from threedfs.ramp import rise
 
 _BARE, _SURE = 0.2, 0.6
@@ -46,7 +46,7 @@ class TrustRule:
 def share_matched(
     photometric: np.ndarray, mask: np.ndarray, reach: float, rule: TrustRule, sureness: float = 0.0
 ) -> np.ndarray:
-    """Return the share of an object's pixels around each whose photographs match, (H, W) float64 in [0, 1].
+    """Return the share of an object's pixels around each whose photographs match, (H, W) float32 in [0, 1].
 
     Not in the paper.
 
@@ -63,10 +63,10 @@ def share_matched(
         Of the object's depth, in [0, 1] (`rate_sureness`); a mirror image matches, too, but seldom as well as a
         texture does, so on a bare object matches must be better.
     """
-    inside = mask.astype(np.float64)
+    inside = mask.astype(np.float32)
     least = rule.bare_matched + sureness * (rule.matched - rule.bare_matched)
-    matched = gaussian_filter((photometric > least) * inside, reach)
-    return matched / np.maximum(gaussian_filter(inside, reach), 1e-3)
+    matched = blur((photometric > least) * inside, reach)
+    return matched / np.maximum(blur(inside, reach), np.float32(1e-3))
 
 
 def trust_depth(
@@ -84,7 +84,7 @@ def trust_depth(
         Views that have a surface where the pixel has it (`Agreement`).
     confidence : (H, W) float32
         Share of agreement, in [0, 1] (`rate_confidence`).
-    matched : (H, W) float64
+    matched : (H, W) float32
         Share of matches around (`share_matched`).
     rule : TrustRule
     hollows : float
@@ -133,7 +133,7 @@ def trust_free(
         In the surface, as its votes count (`trust_aslant`).
     too_far : (H, W) uint8
         Views that have a surface before it (`Agreement`).
-    matched : (H, W) float64
+    matched : (H, W) float32
         Share of matches around (`share_matched`).
     keyframes : int
         That have depth.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,7 +36,9 @@ class Level:
     largest_error: float
 
 
-def make_levels(mesh: Mesh, faces: Sequence[int], seed: int = 0) -> dict[int, Level] | None:
+def make_levels(
+    mesh: Mesh, faces: Sequence[int], finish: Callable[[Mesh], Mesh] = lambda mesh: mesh, seed: int = 0
+) -> dict[int, Level] | None:
     """Return for each number of faces a mesh that has no more, or as few as can be; None if the mesh is not closed.
 
     Faces are merged in small steps of growing tolerance: one large step leaves more of them than many small ones do.
@@ -46,6 +48,8 @@ def make_levels(mesh: Mesh, faces: Sequence[int], seed: int = 0) -> dict[int, Le
     mesh : Mesh
     faces : sequence of int
         Some hundreds at least: with fewer little of the shape is left.
+    finish : callable
+        What is done to a mesh that lost faces before its distance is measured.
     seed : int
         Of the samples that distances are found with.
     """
@@ -58,7 +62,7 @@ def make_levels(mesh: Mesh, faces: Sequence[int], seed: int = 0) -> dict[int, Le
             before, tolerance = known, tolerance * _STEP
             known = simplify_mesh(before, tolerance) or before
         level = known if known is before else _come_close(before, known, count, tolerance)
-        levels[count] = _measure(mesh, level, seed)
+        levels[count] = _measure(mesh, level if level is mesh else finish(level), seed)
     return levels
 
 

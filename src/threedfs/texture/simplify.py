@@ -6,10 +6,14 @@ import manifold3d
 import numpy as np
 
 from threedfs.geometry.faces import vertex_normals
+from threedfs.object.extract import drop_shreds
 from threedfs.types import Mesh
 
 _APART = 1e-5
 """How far vertices at one place are moved apart, lengths of the diagonal of the mesh's box."""
+
+_SHRED = 1e-6
+"""Share of the largest part's volume up to which another part is a shred: what is left of a neck that was taken out."""
 
 
 def simplify_mesh(mesh: Mesh, tolerance: float) -> Mesh | None:
@@ -24,7 +28,7 @@ def simplify_mesh(mesh: Mesh, tolerance: float) -> Mesh | None:
     Returns
     -------
     Mesh or None
-        Closed, with no more handles than before, and no two vertices at one place.
+        Closed, with no more handles and parts than before, and no two vertices at one place.
     """
     low, high = mesh.vertices.min(axis=0), mesh.vertices.max(axis=0)
     diagonal = float(np.linalg.norm(high - low))
@@ -37,9 +41,9 @@ def simplify_mesh(mesh: Mesh, tolerance: float) -> Mesh | None:
     fewer = solid.simplify(tolerance).to_mesh64()
     if not len(fewer.tri_verts):
         return None
-    faces = np.asarray(fewer.tri_verts, np.int64)
-    vertices = _part(np.asarray(fewer.vert_properties, np.float64)[:, :3], faces)
-    return Mesh(vertices * diagonal + low, faces)
+    found = Mesh(np.asarray(fewer.vert_properties, np.float64)[:, :3], np.asarray(fewer.tri_verts, np.int64))
+    kept = drop_shreds(found, _SHRED)
+    return Mesh(_part(kept.vertices, kept.faces) * diagonal + low, kept.faces)
 
 
 def _part(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
