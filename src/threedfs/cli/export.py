@@ -63,6 +63,7 @@ def export(arguments: argparse.Namespace) -> int:
 def _export_scene(arguments: argparse.Namespace) -> int:
     # what is numeric takes a second to import: --help need not wait for it
     from threedfs.io.scales import find_scale
+    from threedfs.progress import Progress
     from threedfs.run_end.export_scene import export_scene
 
     if arguments.height or arguments.faces:
@@ -72,7 +73,10 @@ def _export_scene(arguments: argparse.Namespace) -> int:
         )
     asked = arguments.masks or ["colmap", "nerfstudio"]
     kinds = tuple(dict.fromkeys(kind for name in asked for kind in (_BINARY if name == "all" else (name,))))
-    count = export_scene(arguments.results, arguments.file, arguments.method, kinds)
+    progress = Progress("export")
+    count = export_scene(
+        arguments.results, arguments.file, arguments.method, kinds, track=lambda views: progress.track(views, "frame")
+    )
     unit = "scene units" if find_scale(arguments.results) is None else "metres"
     print(f"{arguments.file}: {count} frames, their masks and cameras, in {unit}")
     return 0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -33,7 +33,12 @@ _OPENGL = np.diag([1.0, -1.0, -1.0, 1.0])
 
 
 def export_scene(
-    sequence: Path, folder: Path, method: str = "surface", masks: Collection[str] = ("colmap", "nerfstudio")
+    sequence: Path,
+    folder: Path,
+    method: str = "surface",
+    masks: Collection[str] = ("colmap", "nerfstudio"),
+    *,
+    track: Callable[[Sequence[View]], Iterable[View]] = iter,
 ) -> int:
     """Write every working frame that has a pose, with its camera and its mask; return how many they are.
 
@@ -52,6 +57,8 @@ def export_scene(
         Whose mesh the masks are drawn from.
     masks : collection of str
         Of `MASKS`: whom they are written for.
+    track : callable
+        Wraps the loop over frames to report progress.
 
     Raises
     ------
@@ -66,7 +73,7 @@ def export_scene(
             raise UserError(f"{path}: expected {what} of a run, found none; correct {sequence}, or run it first.")
     posed, mesh = read_poses(places["cameras"]), read_mesh(require_mesh(sequence, method))
     names = name_files([view.name for view in posed.views])
-    _write_images(folder, names, posed.views, posed.distortion, read_frames(places["frames"]), mesh, masks)
+    _write_images(folder, names, track(posed.views), posed.distortion, read_frames(places["frames"]), mesh, masks)
     scale, points = find_scale(sequence), read_points(sequence / "02_poses/points.zarr.zip")
     unit = 1.0 if scale is None else scale.metres_per_unit
     views = [_resize(view, unit) for view in posed.views]
@@ -104,7 +111,7 @@ def name_files(names: Sequence[str]) -> dict[str, str]:
 def _write_images(
     folder: Path,
     names: Mapping[str, str],
-    views: Sequence[View],
+    views: Iterable[View],
     distortion: tuple[float, float],
     frames: FrameStore,
     mesh: Mesh,
