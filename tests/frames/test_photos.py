@@ -92,7 +92,7 @@ def test_two_photos_of_one_name_are_refused(tmp_path, drawn, progress):
 
 
 def test_a_folder_without_photos_is_refused(tmp_path, progress):
-    with pytest.raises(UserError, match=r"none of 0 such files can be read\.$"):
+    with pytest.raises(UserError, match=r"got a folder without such files\.$"):
         scan_photos(tmp_path, progress)
 
 

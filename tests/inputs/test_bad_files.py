@@ -188,7 +188,7 @@ SEQUENCES = {
         "got a single picture; put all photos into a folder",
     ),
     ("source", "mesh"): (lambda folder, sound: sound / "mesh.ply", "expected a video (mp4 or mov)"),
-    ("source", "empty folder"): (lambda folder, sound: folder, "in which none of 0 such files can be read"),
+    ("source", "empty folder"): (lambda folder, sound: folder, "got a folder without such files"),
     ("source", "other files"): (
         lambda folder, sound: file("IMG_1.DNG", "x")(folder, sound).parent,
         "it has files that end in dng; convert them to jpg",

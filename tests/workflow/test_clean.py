@@ -125,7 +125,7 @@ def test_a_sequence_that_is_not_finished_stays(mine, capsys):
     (folder / "results/mug/logs/depth.log").write_text("threedfs: depth of mug: too dark.\n")
     before = files_of(folder)
     assert main(["clean", "mug", "--yes"]) == 1
-    assert "mug is not: run it to its end first." in capsys.readouterr().err
+    assert "mug is not: run it to its end first, or delete" in capsys.readouterr().err
     assert main(["clean", "--all", "--yes"]) == 0
     assert "mug is not finished, and stays as it is." in capsys.readouterr().err
     assert files_of(folder) == before
