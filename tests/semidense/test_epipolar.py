@@ -12,12 +12,12 @@ from threedfs.params.semidense import SemidenseParams
 from threedfs.semidense.epipolar import (
     FOUND,
     NOT_SEARCHED,
-    TEMPLATE_MARGIN,
     WORK,
     SearchRule,
     _compare,
     search_line,
 )
+from threedfs.semidense.epipolar_segment import TEMPLATE_MARGIN
 from threedfs.semidense.gradient import find_textured, image_gradient, to_grey
 from threedfs.semidense.pair import relate
 

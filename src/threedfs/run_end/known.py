@@ -29,9 +29,9 @@ def require_mesh(sequence: Path, method: str) -> Path:
     if not sequence.is_dir():
         raise UserError(f"{sequence}: expected the folder of a sequence, as results/my, found none; correct it.")
     path = sequence / "11_object" / method / "mesh.ply"
-    others = sorted(mesh.parent.name for mesh in sequence.glob("11_object/*/mesh.ply"))
     if path.is_file():
         return path
+    others = sorted(mesh.parent.name for mesh in sequence.glob("11_object/*/mesh.ply"))
     if others:
         raise UserError(
             f"{sequence}: expected a mesh by the method {method}, found {'one' if len(others) == 1 else 'those'} by "

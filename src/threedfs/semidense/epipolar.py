@@ -8,63 +8,13 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
+from threedfs.semidense.epipolar_segment import MAX_SPAN, REACH, invert_transfer, lay_segment
+
 FOUND, NOT_SEARCHED, NOT_FOUND = 0, 1, 2
 """Outcomes: a distinct match; the geometry allows no search; there is no distinct match."""
 
-_REACH = 2
-"""Samples on either side of the pixel: 5 in all."""
-
-_LEAST_RATE, _GREATEST_RATE = 0.4, 2.5
-"""Pixels along the line in the neighbour per pixel in the keyframe, between which the images can be compared."""
-
-TEMPLATE_MARGIN = math.ceil(_REACH / _LEAST_RATE) + 1
-"""Pixels of the keyframe around the searched one from which the samples may be interpolated."""
-
-_MAX_SPAN = 250.0
-"""Greatest length of the searched segment, in pixels of the neighbour: five samples are not distinct on more."""
-
-_MIN_SPAN = 6.0
-"""Least length of the searched segment, in pixels of the neighbour."""
-
-
-WORK = math.ceil(_MAX_SPAN) + 8
+WORK = math.ceil(MAX_SPAN) + 8
 """Scratch of one search: places along the longest segment, and what the window takes beyond its ends."""
-
-
-class EpipolarSegment(NamedTuple):
-    """Where one pixel of the keyframe may be seen in a neighbour.
-
-    Attributes
-    ----------
-    line_u, line_v : float
-        Unit direction of the epipolar line in the keyframe.
-    gradient : float
-        Slope of the keyframe's grey levels, per pixel across its edge.
-    cosine : float
-        Of the angle between that gradient and the line.
-    start_u, start_v : float
-        First place in the neighbour.
-    step_u, step_v : float
-        Unit direction from place to place.
-    places : int
-        One a pixel of the neighbour.
-    rate : float
-        Pixels along the line in the neighbour per pixel in the keyframe.
-    """
-
-    line_u: float
-    line_v: float
-    gradient: float
-    cosine: float
-    start_u: float
-    start_v: float
-    step_u: float
-    step_v: float
-    places: int
-    rate: float
-
-
-_NO_SEGMENT = EpipolarSegment(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0, 0.0)
 
 
 class SearchRule(NamedTuple):
@@ -131,28 +81,6 @@ def _compare(samples, template, differences):
 
 
 @njit(cache=True)
-def _distance(x0, y0, x1, y1):
-    return math.sqrt((x1 - x0) * (x1 - x0) + (y1 - y0) * (y1 - y0))
-
-
-@njit(cache=True)
-def _transfer(infinite, baseline, u, v, inverse_depth):
-    x = infinite[0, 0] * u + infinite[0, 1] * v + infinite[0, 2] + inverse_depth * baseline[0]
-    y = infinite[1, 0] * u + infinite[1, 1] * v + infinite[1, 2] + inverse_depth * baseline[1]
-    z = infinite[2, 0] * u + infinite[2, 1] * v + infinite[2, 2] + inverse_depth * baseline[2]
-    return x, y, z
-
-
-@njit(cache=True)
-def _invert_transfer(infinite, baseline, u, v, other_u, other_v, along_u):
-    """Inverse depth at which (u, v) is seen at (other_u, other_v), from the coordinate that varies more."""
-    x, y, z = _transfer(infinite, baseline, u, v, 0.0)
-    if along_u:
-        return (x - other_u * z) / (other_u * baseline[2] - baseline[0])
-    return (y - other_v * z) / (other_v * baseline[2] - baseline[1])
-
-
-@njit(cache=True)
 def _refine(differences, place):
     """Sub-step shift of a local minimum, and its value, by the parabola through its neighbours."""
     before, here, after = differences[place - 1], differences[place], differences[place + 1]
@@ -161,56 +89,6 @@ def _refine(differences, place):
         return 0.0, here
     shift = 0.5 * (before - after) / bend
     return shift, max(here - 0.25 * (before - after) * shift, 0.0)
-
-
-@njit(cache=True)
-def _lay_segment(gradient_u, gradient_v, u, v, low, high, bounds, geometry, rule):
-    """Return whether the geometry allows a search, and the segment from `low` to `high`; see `search_line`."""
-    infinite, baseline, epipole = geometry.infinite, geometry.baseline, geometry.epipole
-
-    # The epipolar line through the pixel in the keyframe, and how steep the image is along it.
-    line_u = epipole[0] - epipole[2] * u
-    line_v = epipole[1] - epipole[2] * v
-    length = math.sqrt(line_u * line_u + line_v * line_v)
-    gradient = math.sqrt(gradient_u[v, u] * gradient_u[v, u] + gradient_v[v, u] * gradient_v[v, u])
-    if length < 1e-12 or gradient < 1e-6:
-        return False, _NO_SEGMENT
-    line_u /= length
-    line_v /= length
-    cosine = (gradient_u[v, u] * line_u + gradient_v[v, u] * line_v) / gradient
-    if cosine * cosine < rule.min_gradient_cosine2:
-        return False, _NO_SEGMENT
-
-    x0, y0, z0 = _transfer(infinite, baseline, u, v, low)
-    x1, y1, z1 = _transfer(infinite, baseline, u, v, high)
-    if z0 <= 0 or z1 <= 0:
-        return False, _NO_SEGMENT
-    x0, y0, x1, y1 = x0 / z0, y0 / z0, x1 / z1, y1 / z1
-    span = _distance(x0, y0, x1, y1)
-    wide0 = _transfer(infinite, baseline, u, v, bounds[0])
-    wide1 = _transfer(infinite, baseline, u, v, bounds[1])
-    if not 1e-9 < span <= _MAX_SPAN or wide0[2] <= 0 or wide1[2] <= 0:
-        return False, _NO_SEGMENT
-    whole = _distance(wide0[0] / wide0[2], wide0[1] / wide0[2], wide1[0] / wide1[2], wide1[1] / wide1[2])
-    if whole < 1:
-        return False, _NO_SEGMENT
-    step_u, step_v = (x1 - x0) / span, (y1 - y0) / span
-    # A well-known depth leaves a short segment: the observation itself still needs room to differ.
-    pad = max(0.0, (_MIN_SPAN - span) / 2)
-    x0, y0, span = x0 - pad * step_u, y0 - pad * step_v, span + 2 * pad
-
-    middle = 0.5 * (low + high)
-    xa, ya, za = _transfer(infinite, baseline, u, v, middle)
-    xb, yb, zb = _transfer(infinite, baseline, u + line_u, v + line_v, middle)
-    rate = (xb / zb - xa / za) * step_u + (yb / zb - ya / za) * step_v
-    if abs(rate) < _LEAST_RATE or abs(rate) > _GREATEST_RATE:
-        return False, _NO_SEGMENT
-    height, width = gradient_u.shape
-    reach = _REACH * abs(1 / rate)
-    if u < reach + 1 or v < reach + 1 or u > width - 2 - reach or v > height - 2 - reach:
-        return False, _NO_SEGMENT
-    places = int(np.ceil(span)) + 1
-    return True, EpipolarSegment(line_u, line_v, np.float64(gradient), cosine, x0, y0, step_u, step_v, places, rate)
 
 
 @njit(cache=True)
@@ -234,10 +112,10 @@ def _find_distinct(differences, best, rule):
     if best == 0 or best == last or differences[best - 1] == np.inf or differences[best + 1] == np.inf:
         return np.nan
     shift, least = _refine(differences, best)
-    if least > (2 * _REACH + 1) * rule.max_residual**2:
+    if least > (2 * REACH + 1) * rule.max_residual**2:
         return np.nan
     # Noise alone leaves this much difference at the true place, so a rival must stand out from it too.
-    noise = 2 * (2 * _REACH) * rule.image_noise**2
+    noise = 2 * (2 * REACH) * rule.image_noise**2
     for place in range(len(differences)):
         if abs(place - best) > 1:
             rival = differences[place]
@@ -281,14 +159,14 @@ def search_line(grey, gradient_u, gradient_v, other, u, v, low, high, bounds, ge
         Variance = alpha^2 (1 / 400 + sigma_geometry^2 + sigma_photometry^2), alpha the change of inverse
         depth per pixel along the line; NaN unless FOUND.
     """
-    allowed, segment = _lay_segment(gradient_u, gradient_v, u, v, low, high, bounds, geometry, rule)
+    allowed, segment = lay_segment(gradient_u, gradient_v, u, v, low, high, bounds, geometry, rule)
     if not allowed:
         return NOT_SEARCHED, np.nan, np.nan
     step_u, step_v, places = segment.step_u, segment.step_v, segment.places
 
     # Samples run two steps past either end for the window and one more for the parabola.
-    samples = work[0, : places + 2 * (_REACH + 1)]
-    outset = _REACH + 1
+    samples = work[0, : places + 2 * (REACH + 1)]
+    outset = REACH + 1
     _sample_line(other, segment.start_u - outset * step_u, segment.start_v - outset * step_v, step_u, step_v, samples)
     differences = work[1, : places + 2]
     seen, best = _compare(samples, _take_template(grey, u, v, segment), differences)
@@ -302,13 +180,13 @@ def search_line(grey, gradient_u, gradient_v, other, u, v, low, high, bounds, ge
     found_u, found_v = segment.start_u + position * step_u, segment.start_v + position * step_v
     along_u = abs(step_u) > abs(step_v)
     infinite, baseline = geometry.infinite, geometry.baseline
-    inverse_depth = _invert_transfer(infinite, baseline, u, v, found_u, found_v, along_u)
+    inverse_depth = invert_transfer(infinite, baseline, u, v, found_u, found_v, along_u)
     if not bounds[0] <= inverse_depth <= bounds[1]:
         return NOT_FOUND, np.nan, np.nan
-    beyond = _invert_transfer(infinite, baseline, u, v, found_u + step_u, found_v + step_v, along_u)
+    beyond = invert_transfer(infinite, baseline, u, v, found_u + step_u, found_v + step_v, along_u)
     alpha = beyond - inverse_depth
     cosine = segment.cosine
-    slope = (samples[best + _REACH + 1] - samples[best + _REACH - 1]) / 2
+    slope = (samples[best + REACH + 1] - samples[best + REACH - 1]) / 2
     slope = max(abs(slope), 0.5 * abs(segment.gradient * cosine / segment.rate))
     variance = alpha**2 * (1 / 400 + rule.line_noise**2 / (cosine * cosine) + 2 * rule.image_noise**2 / slope**2)
     return FOUND, inverse_depth, variance

@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from threedfs.geometry.projection import inside, project
-from threedfs.semidense.epipolar import TEMPLATE_MARGIN, SearchRule
+from threedfs.semidense.epipolar import SearchRule
+from threedfs.semidense.epipolar_segment import TEMPLATE_MARGIN
 from threedfs.semidense.gradient import find_textured, image_gradient, to_grey
 from threedfs.semidense.observe import observe_neighbour
 from threedfs.semidense.pair import relate
