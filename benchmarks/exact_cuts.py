@@ -5,8 +5,9 @@
 Takes a finished run of a rendered take with `keyframes_at_truth: true`, gc_2d and gc_2d3d_pixel. Cuts its
 images again, alone (2D GC of Section 4.3) and jointly with the voxels, with the run's own settings: as it is; with
 superpixels split where they straddle the true outline; with colours learnt in every round from true masks; with both.
-Prints the mean IoU over the keyframes, in crops, beside the best that the superpixels allow. With changes to settings
-of `segment` it prints the IoU as it is and with these instead, each alone or all together.
+Prints the mean IoU over the keyframes, in crops, of the pixels and of the labelled voxels' outline (gc_2d3d_voxel),
+beside the best that the superpixels allow and the outline of the fused field. With changes to settings of `segment`
+it prints the IoU as it is and with these instead, each alone or all together.
 """
 
 from __future__ import annotations
@@ -29,14 +30,18 @@ from threedfs.io.arrays import read_arrays
 from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import read_edges
 from threedfs.io.images import read_mask
-from threedfs.io.segmentation import SEGMENTATION, read_segmentation
+from threedfs.io.keyframes import read_keyframes
+from threedfs.io.segmentation import SEGMENTATION, Segmentation, read_segmentation
 from threedfs.io.superpixels import read_superpixels, write_superpixels
+from threedfs.io.volumes import read_silhouettes
 from threedfs.job import Job
+from threedfs.object.silhouettes import draw_silhouette
 from threedfs.params.schema import make_params
 from threedfs.params.segment import SegmentParams
 from threedfs.progress import Progress
 from threedfs.segment import joint
 from threedfs.segment.energy import BACKGROUND, OBJECT
+from threedfs.segment.outline import surround_voxels
 from threedfs.segment.superpixels import Superpixels, join_superpixels
 from threedfs.stages import segment
 
@@ -65,8 +70,8 @@ def cut_anew(
     superpixels: Path,
     truth: Mapping[str, np.ndarray] | None = None,
     changes: Mapping[str, Any] = MappingProxyType({}),
-) -> dict[str, np.ndarray]:
-    """Cut anew, with superpixels of a folder, colours of true masks if any, and changed settings; return the masks."""
+) -> Segmentation:
+    """Cut anew, with superpixels of a folder, colours of true masks if any, and changed settings."""
     params = read_arrays(folder / f"10_segment/{cut}.zarr.zip", SEGMENTATION)[1]["parameters"] | changes
     learn = joint._learn_colors
 
@@ -95,7 +100,14 @@ def cut_anew(
             params=make_params(SegmentParams, params),
             job=Job(Progress(cut), {}, 1, 0),
         )
-        return read_segmentation(Path(scratch) / "labels.zarr.zip").masks
+        return read_segmentation(Path(scratch) / "labels.zarr.zip")
+
+
+def draw_voxels(folder: Path, labelled: Segmentation) -> dict[str, np.ndarray]:
+    """Return the outlines (H, W) bool of the object's voxels in the crops of the keyframes."""
+    surface = surround_voxels(labelled.voxels == OBJECT, labelled.grid)
+    entries = read_keyframes(folder / "04_crops/keyframes.json")
+    return {name: draw_silhouette(surface, entry.view) for name, entry in entries.items()}
 
 
 def mean_iou(masks: Mapping[str, np.ndarray], truth: Mapping[str, np.ndarray]) -> float:
@@ -104,18 +116,20 @@ def mean_iou(masks: Mapping[str, np.ndarray], truth: Mapping[str, np.ndarray]) -
 
 
 def measure_changes(folder: Path, changes: list[str], together: bool) -> dict[str, float]:
-    """Return the IoU of both cuts as they are, and with each change alone, or with all of them."""
+    """Return the IoU of both cuts and of the voxels as they are, and with each change alone, or with all of them."""
     truth, found = read_true_masks(folder), {}
     for made in [[], changes] if together else [[], *([change] for change in changes)]:
         settings = {key: yaml.safe_load(value) for key, _, value in (change.partition("=") for change in made)}
         for cut in ("images", "joint"):
-            masks = cut_anew(folder, cut, folder / "10_segment/superpixels", None, settings)
-            found[" ".join([cut, *made])] = mean_iou(masks, truth)
+            labelled = cut_anew(folder, cut, folder / "10_segment/superpixels", None, settings)
+            found[" ".join([cut, *made])] = mean_iou(labelled.masks, truth)
+            if cut == "joint":
+                found[" ".join(["voxels", *made])] = mean_iou(draw_voxels(folder, labelled), truth)
     return found
 
 
 def measure(folder: Path) -> dict[str, float]:
-    """Return the IoU of both cuts with nothing, superpixels, colours, and both exact."""
+    """Return the IoU of both cuts and of the voxels with nothing, superpixels, colours, and both exact."""
     truth = read_true_masks(folder)
     given = folder / "10_segment/superpixels"
     found, best = {}, {}
@@ -126,6 +140,8 @@ def measure(folder: Path) -> dict[str, float]:
             exact = split_at(superpixels, own, read_edges(folder / f"05_edges/{name}.zarr.zip"))
             write_superpixels(Path(scratch) / f"{name}.zarr.zip", exact, {})
         found["best labels"] = mean_iou(best, truth)
+        fused = read_silhouettes(folder / "11_object/fused_sdf/silhouettes.zarr.zip")
+        found["fused field"] = mean_iou(fused, truth)
         for cut in ("images", "joint"):
             for what, where, known in (
                 ("", given, None),
@@ -133,7 +149,10 @@ def measure(folder: Path) -> dict[str, float]:
                 (", colours", given, truth),
                 (", both", Path(scratch), truth),
             ):
-                found[cut + what] = mean_iou(cut_anew(folder, cut, where, known), truth)
+                labelled = cut_anew(folder, cut, where, known)
+                found[cut + what] = mean_iou(labelled.masks, truth)
+                if cut == "joint":
+                    found["voxels" + what] = mean_iou(draw_voxels(folder, labelled), truth)
     return found
 
 

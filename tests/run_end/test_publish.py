@@ -5,6 +5,7 @@ import pytest
 from threedfs.errors import UserError
 from threedfs.evaluate.scores import Metric
 from threedfs.io.metrics import read_metrics, write_metrics
+from threedfs.run_end.finish import TABLES
 from threedfs.run_end.publish import BEGIN, END, publish
 
 
@@ -32,6 +33,17 @@ def test_tables_plots_and_figures_are_published(results, tmp_path, monkeypatch):
     assert text.index("### IoU") < text.index("## Cost")
     assert "found no a.mp4." in text and str(tmp_path) not in text
     assert (docs / "plots/iou_toys.svg").read_text() == "<svg/>"
+
+
+def test_whatever_table_a_run_makes_is_published_once_under_a_heading(results, tmp_path):
+    docs = tmp_path / "docs"
+    for name in TABLES:
+        (results / f"tables/{name}.md").write_text(f"### Of {name}\n")
+    publish(results, docs)
+    lines = (docs / "results.md").read_text().splitlines()
+    headings = [line for line in lines if line.startswith("## ")]
+    assert len(set(headings)) == len(headings) == len(TABLES) + 1
+    assert [line for line in lines if line.startswith("### Of ")] == [f"### Of {name}" for name in TABLES]
 
 
 def test_figures_alone_leave_tables_and_plots_as_they_are(results, tmp_path):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import sys
 from pathlib import Path
 
@@ -20,6 +21,7 @@ _TITLES = {
     "poses": "Poses",
     "meshes": "Meshes",
     "depth": "Depth maps of the keyframes",
+    "doubts": "Doubtful truth",
     "costs": "Cost",
 }
 _PLOTS = {"iou": "iou_*.svg", "depth_experiment": "depth_*.svg"}
@@ -88,8 +90,16 @@ def _section(name: str, results: Path, plots: list[str]) -> str:
     return f"## {_TITLES[name]}\n\n{images}{text}"
 
 
-if __name__ == "__main__":
+def main() -> None:
+    """Publish what lies in `results/` into `docs/` of the folder that this is started in."""
+    parser = argparse.ArgumentParser(description="Copy the tables and plots of a run into the documentation.")
+    parser.add_argument("--figures-only", action="store_true", help="write docs/results.csv alone")
+    given = parser.parse_args()
     try:
-        publish(Path("results"), Path("docs"), figures_only="--figures-only" in sys.argv[1:])
+        publish(Path("results"), Path("docs"), figures_only=given.figures_only)
     except UserError as fault:
         sys.exit(f"threedfs: {fault}")
+
+
+if __name__ == "__main__":
+    main()
