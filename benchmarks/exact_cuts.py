@@ -2,7 +2,7 @@
 
     python benchmarks/exact_cuts.py results/NAME [results/NAME ...] [--change KEY=VALUE ... [--together]]
 
-Takes a finished run of a rendered take with `keyframes_at_truth: true`, gc_2d and gc_2d3d_pixel. Cuts its
+Takes a finished run of a rendered take with `keyframes_at_truth: true`, fused_sdf, gc_2d and gc_2d3d_pixel. Cuts its
 images again, alone (2D GC of Section 4.3) and jointly with the voxels, with the run's own settings: as it is; with
 superpixels split where they straddle the true outline; with colours learnt in every round from true masks; with both.
 Prints the mean IoU over the keyframes, in crops, of the pixels and of the labelled voxels' outline (gc_2d3d_voxel),
