@@ -115,6 +115,16 @@ def mean_iou(masks: Mapping[str, np.ndarray], truth: Mapping[str, np.ndarray]) -
     return float(np.mean([intersection_over_union(masks[name], own) for name, own in truth.items()]))
 
 
+def measure_cut(
+    folder: Path, cut: str, labelled: Segmentation, truth: Mapping[str, np.ndarray], made: str
+) -> dict[str, float]:
+    """Return the mean IoU of a cut's pixels and, of the joint one, of its voxels' outline, under names that end so."""
+    found = {cut + made: mean_iou(labelled.masks, truth)}
+    if cut == "joint":
+        found["voxels" + made] = mean_iou(draw_voxels(folder, labelled), truth)
+    return found
+
+
 def measure_changes(folder: Path, changes: list[str], together: bool) -> dict[str, float]:
     """Return the IoU of both cuts and of the voxels as they are, and with each change alone, or with all of them."""
     truth, found = read_true_masks(folder), {}
@@ -122,9 +132,7 @@ def measure_changes(folder: Path, changes: list[str], together: bool) -> dict[st
         settings = {key: yaml.safe_load(value) for key, _, value in (change.partition("=") for change in made)}
         for cut in ("images", "joint"):
             labelled = cut_anew(folder, cut, folder / "10_segment/superpixels", None, settings)
-            found[" ".join([cut, *made])] = mean_iou(labelled.masks, truth)
-            if cut == "joint":
-                found[" ".join(["voxels", *made])] = mean_iou(draw_voxels(folder, labelled), truth)
+            found |= measure_cut(folder, cut, labelled, truth, "".join(f" {change}" for change in made))
     return found
 
 
@@ -149,10 +157,7 @@ def measure(folder: Path) -> dict[str, float]:
                 (", colours", given, truth),
                 (", both", Path(scratch), truth),
             ):
-                labelled = cut_anew(folder, cut, where, known)
-                found[cut + what] = mean_iou(labelled.masks, truth)
-                if cut == "joint":
-                    found["voxels" + what] = mean_iou(draw_voxels(folder, labelled), truth)
+                found |= measure_cut(folder, cut, cut_anew(folder, cut, where, known), truth, what)
     return found
 
 
