@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 from slab import GRID, confirm, make_slab
 
-from threedfs.surface.sight import fill_unseen, spread_directions
+from threedfs.surface.sight import fill_unseen
+from threedfs.surface.sky import spread_directions
 
 EVERYWHERE, ALLOWED = np.ones(GRID.shape, bool), make_slab()
 UP = np.array([0.0, 0, 1])

@@ -246,6 +246,13 @@ class SurfaceParams(SmoothingSettings):
         minimum=0.0,
         maximum=12.0,
     )
+    hidden_tunnel_width: float = parameter(
+        6.0,
+        "the same where hardly any sky is seen, as inside the object but not between spines",
+        unit="voxel",
+        minimum=0.0,
+        maximum=12.0,
+    )
     medians: int = parameter(
         3,
         "times that the field becomes its median over a voxel and the 6 beside it: pits, spikes and handles go",

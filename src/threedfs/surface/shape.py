@@ -18,7 +18,7 @@ from threedfs.surface.confirmed import ConfirmedDepth
 from threedfs.surface.held import release_bound
 from threedfs.surface.plate import bend_mesh, support_vertices
 from threedfs.surface.sight import fill_unseen
-from threedfs.surface.tunnels import close_tunnels
+from threedfs.surface.tunnels import close_hidden_tunnels, close_tunnels
 from threedfs.types import Mesh, Plane, View
 
 
@@ -36,6 +36,7 @@ class ShapeRule:
     free_share: float
     closing: float
     tunnel_width: float
+    hidden_tunnel_width: float
     medians: int
     smoothing_steps: int
     smoothing_contrast: float
@@ -99,6 +100,7 @@ def shape_surface(
     sdf = fill_unseen(sdf, filler, height > 0, plane.normal, depth, rule.free_share)
     alone = mask_field(sdf, np.ones(grid.shape, bool), height, grid.spacing, rule.medians)
     alone = close_tunnels(alone, height > 0, rule.tunnel_width, depth.threads)
+    alone = close_hidden_tunnels(alone, height > 0, rule.hidden_tunnel_width, grid, plane.normal, depth.threads)
     if not (alone < 0).any():
         return None
     smooth = smooth_mesh(extract_surface(alone, grid), rule.smoothing_steps, rule.smoothing_contrast)

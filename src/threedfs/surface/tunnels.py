@@ -1,4 +1,4 @@
-"""Tunnels a few voxels wide, which noise drills through thin parts, are closed; pits stay."""
+"""Tunnels a few voxels wide, which noise drills, are closed; pits stay."""
 
 from __future__ import annotations
 
@@ -7,11 +7,15 @@ from scipy.ndimage import find_objects, label
 from skimage.measure import euler_number
 
 from threedfs.geometry.near import find_near
+from threedfs.surface.sky import rate_openness
+from threedfs.types import VoxelGrid
 
 _PLUG = np.float32(-0.5)
 """Value of a voxel that closes a tunnel."""
 _CORNERS = 3
 """Voxels of the solid hang together where they touch at a corner."""
+_HIDDEN = 0.05
+"""Share of the sky below which a place is hidden inside the object."""
 
 
 def close_tunnels(field: np.ndarray, above: np.ndarray, width: float, threads: int = 1) -> np.ndarray:
@@ -33,7 +37,43 @@ def close_tunnels(field: np.ndarray, above: np.ndarray, width: float, threads: i
     solid = field < 0
     if width <= 0 or not solid.any():
         return field
-    pieces, _ = label(_closed_by_ball(solid, above & ~solid, width / 2, threads))
+    return _plug_tunnels(field, solid, _closed_by_ball(solid, above & ~solid, width / 2, threads))
+
+
+def close_hidden_tunnels(
+    field: np.ndarray, above: np.ndarray, width: float, grid: VoxelGrid, up: np.ndarray, threads: int = 1
+) -> np.ndarray:
+    """Return the field (nx, ny, nz) float32, negative inside, with tunnels plugged where hardly any sky is seen.
+
+    Not in the paper. A ball as wide as `close_tunnels` has none would level what lies between spines and folds. But
+    these are open to the sky, and the inside of a tunnel is not. The ends of the tunnel stay, as pits.
+
+    Parameters
+    ----------
+    field : (nx, ny, nz) float32
+    above : (nx, ny, nz) bool
+        Voxels that may become solid. The others hide the sky.
+    width : float
+        Of the widest tunnel that is plugged, voxels.
+    grid : VoxelGrid
+    up : (3,) float64
+        Unit normal of the support plane, world frame.
+    threads : int
+        Changes no result.
+    """
+    solid = field < 0
+    if width <= 0 or not solid.any():
+        return field
+    added = _closed_by_ball(solid, above & ~solid, width / 2, threads)
+    places = np.flatnonzero(added)
+    shown = rate_openness(solid | ~above, places, grid, up, threads) >= _HIDDEN
+    added.flat[places[shown]] = False
+    return _plug_tunnels(field, solid, added)
+
+
+def _plug_tunnels(field: np.ndarray, solid: np.ndarray, added: np.ndarray) -> np.ndarray:
+    """Return the field with those pieces of `added` (nx, ny, nz) bool made solid that close a tunnel."""
+    pieces, _ = label(added)
     padded, closed = np.pad(solid, 1), field.copy()
     for number, box in enumerate(find_objects(pieces), start=1):
         piece = pieces[box] == number
