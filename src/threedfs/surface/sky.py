@@ -19,7 +19,9 @@ _DIRECTIONS = 48
 """Of the sky."""
 
 
-def rate_openness(solid: np.ndarray, places: np.ndarray, grid: VoxelGrid, up: np.ndarray, threads: int = 1) -> np.ndarray:
+def rate_openness(
+    solid: np.ndarray, places: np.ndarray, grid: VoxelGrid, up: np.ndarray, threads: int = 1
+) -> np.ndarray:
     """Return the share of the sky that voxels see past the solid ones, (N,) float64 in [0, 1].
 
     Not in the paper. Beside a wall it is a half.
