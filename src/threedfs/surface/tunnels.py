@@ -45,8 +45,8 @@ def close_hidden_tunnels(
 ) -> np.ndarray:
     """Return the field (nx, ny, nz) float32, negative inside, with tunnels plugged where hardly any sky is seen.
 
-    Not in the paper. A ball as wide as `close_tunnels` has none would level what lies between spines and folds. But
-    these are open to the sky, and the inside of a tunnel is not. The ends of the tunnel stay, as pits.
+    Not in the paper. A wider ball than that of `close_tunnels` would fill what lies between spines and folds, too. But
+    these places are open to the sky, and the inside of a tunnel is not. The ends of the tunnel stay, as pits.
 
     Parameters
     ----------
