@@ -2,7 +2,7 @@
 # make test    set everything up and run all tests
 # make setup   only set everything up
 # make config  rewrite config/ from the parameters declared in src/threedfs/params/
-# make results copy the figures, tables and plots of the last run into docs/
+# make results copy the figures, tables and plots of all sequences under results/ into docs/
 # make contours  train the contour detector anew: the same seed, the same bytes
 # make lock    rewrite the hashed pins from envs/requirements.in and envs/slurm.in
 # make setup-slurm   setup, and what runs on a Slurm cluster need (docs/cluster.md)

@@ -38,7 +38,7 @@ def ball(tmp_path):
     return tmp_path / "ball.ply", mesh
 
 
-def write_cameras(path, turn=None, shift=(0, 0, 0), scale=1.0, count=8):
+def write_cameras(path, turn=None, shift=(0, 0, 0), scale=1.0, count=8, name="{:06d}"):
     """Cameras on a spiral, in a world that is turned, scaled and shifted."""
     rotation = np.eye(3) if turn is None else turn
     entries = []
@@ -47,7 +47,7 @@ def write_cameras(path, turn=None, shift=(0, 0, 0), scale=1.0, count=8):
         pose = np.eye(4)
         pose[:3, :3] = rotation @ Rotation.from_euler("y", angle).as_matrix()
         pose[:3, 3] = scale * rotation @ [4 * np.cos(angle), 0.2 * number, 4 * np.sin(angle)] + shift
-        entries.append({"file_path": f"images/{number:06d}.png", "transform_matrix": pose.tolist()})
+        entries.append({"file_path": f"images/{name.format(number)}.png", "transform_matrix": pose.tolist()})
     lens = {"w": 64, "h": 48, "fl_x": 50.0, "fl_y": 50.0, "cx": 32.0, "cy": 24.0}
     path.write_text(json.dumps({**lens, "frames": entries}))
     return path
@@ -119,6 +119,15 @@ def test_cameras_move_a_mesh_to_the_true_one(ball, tmp_path):
     assert values(score_mesh(tmp_path / "moved.ply", path, mine, true))["mesh_f_score_0.25"] > 0.999
     errors = values(score_cameras(mine, true))
     assert errors["pose_centre_error_max"] < 1e-6 and errors["pose_rotation_error_max"] < 1e-4
+
+
+def test_cameras_are_paired_by_the_names_of_their_frames(tmp_path):
+    mine = write_cameras(tmp_path / "mine.json")
+    short = write_cameras(tmp_path / "short.json", name="{}")
+    assert values(score_cameras(mine, short))["pose_centre_error_max"] < 1e-6
+    others = write_cameras(tmp_path / "others.json", name="left_{}")
+    with pytest.raises(UserError, match=r"named like those of .*mine.json, such as 000000, found 0; .*like left_0"):
+        score_cameras(mine, others)
 
 
 def test_the_command_prints_and_writes_the_figures(ball, tmp_path, capsys):

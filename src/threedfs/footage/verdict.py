@@ -81,7 +81,7 @@ def _grade(bad: bool, fair: bool) -> str:
 def _judge_length(seconds: float | None, frames: int) -> Opinion:
     if seconds is None:
         grade = _grade(frames < _FEWEST_FRAMES, frames < _FEW_PHOTOS)
-        return Opinion("photos", f"{frames}", grade, "Take 30 to 60 photos, all around at two or three heights.")
+        return Opinion("photos", f"{frames}", grade, "Take 50 to 100 photos, all around at two or three heights.")
     grade = _grade(frames < _FEWEST_FRAMES or seconds < _SHORTEST, seconds < _SHORT)
     return Opinion("length", f"{seconds:.1f} s, {frames} frames", grade, "Film for 10 to 30 seconds, once around.")
 

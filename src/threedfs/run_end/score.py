@@ -109,12 +109,22 @@ def _align(cameras: Path, truth: Path) -> tuple[dict[str, np.ndarray], dict[str,
     """Return the poses that both files have, by name, and the way from the first file's world to the second's."""
     mine, true = _read_poses(cameras), _read_poses(truth)
     common = [name for name in mine if name in true]
+    if len(common) < 3:
+        raise UserError(
+            f"{truth}: expected at least 3 cameras named like those of {cameras}, such as {next(iter(mine))}, found "
+            f"{len(common)}; its own are named like {next(iter(true))}."
+        )
     mine, true = {name: mine[name] for name in common}, {name: true[name] for name in common}
     return mine, true, align_poses(list(mine.values()), list(true.values()))
 
 
 def _read_poses(path: Path) -> dict[str, np.ndarray]:
-    return {camera.name: camera.cam_from_world for camera in read_given_cameras(path)}
+    return {_name_frame(camera.name): camera.cam_from_world for camera in read_given_cameras(path)}
+
+
+def _name_frame(name: str) -> str:
+    """Give the number of a video's frame as many digits as we do: `10` and `000010` are one name."""
+    return name_video_frame(int(name)) if name.isdecimal() else name
 
 
 def _list_masks(folder: Path) -> Mapping[str, Path]:
@@ -123,8 +133,7 @@ def _list_masks(folder: Path) -> Mapping[str, Path]:
         name = path.name
         for end in _MASK_ENDS:
             name = name.removesuffix(end)
-        if name.isdecimal():
-            name = name_video_frame(int(name))
+        name = _name_frame(name)
         if name in found:
             raise UserError(
                 f"{path}: expected one mask of each frame, found {found[name].name} of the same; remove one."
