@@ -66,21 +66,6 @@ def assemble_prior(weight: np.ndarray, prior: str, border: int = 0) -> np.ndarra
     return planes
 
 
-def prior_energy(depth: np.ndarray, weight: np.ndarray, prior: str) -> float:
-    """Evaluate the prior's energy from its definition (Eq. 3), to hold the stencil against."""
-    if prior == "first_order":
-        along_u = np.minimum(weight[:, :-1], weight[:, 1:]) * np.diff(depth, axis=1) ** 2
-        along_v = np.minimum(weight[:-1], weight[1:]) * np.diff(depth, axis=0) ** 2
-        return float(along_u.sum() + along_v.sum())
-    energy = (weight[:, 1:-1] * np.diff(depth, 2, axis=1) ** 2).sum()
-    energy += (weight[1:-1] * np.diff(depth, 2, axis=0) ** 2).sum()
-    if prior == "rotation_invariant":
-        mixed = np.diff(np.diff(depth, axis=0), axis=1)
-        cell = np.minimum(np.minimum(weight[:-1, :-1], weight[:-1, 1:]), np.minimum(weight[1:, :-1], weight[1:, 1:]))
-        energy += (2 * cell * mixed**2).sum()
-    return float(energy)
-
-
 def release_bends(depth: np.ndarray, tolerated: float, prior: str) -> np.ndarray:
     """Weaken a prior where the surface already bends more than smooth surfaces do: at depth discontinuities.
 
