@@ -48,10 +48,12 @@ def out(tmp_path):
 
 
 def test_du_tells_sizes_by_stage_and_sequence(out, capsys):
+    add(out, ".", "collect", "t" * 2000)
     assert main(["store", "du", "--out", str(out)]) == 0
     lines = [line.split() for line in capsys.readouterr().out.splitlines()]
     assert ["stage", "depth", "6.0", "kB"] in lines and ["sequence", "cup", "3.0", "kB"] in lines
-    assert ["sequence", "mug", "1.0", "kB"] in lines and ["objects", "9.0", "kB"] in lines
+    assert ["sequence", "mug", "1.0", "kB"] in lines and ["objects", "11.0", "kB"] in lines
+    assert ["sequence", "(tables", "of", "all)", "2.0", "kB"] in lines
 
 
 def test_gc_lists_first_and_removes_what_no_result_needs(out, capsys):

@@ -132,7 +132,8 @@ def _find_keys(arguments: Namespace) -> dict[str, set[str]]:
         for folder in sorted(path for path in results.iterdir() if path.is_dir() and not path.name.startswith(".")):
             found = read_keys(folder)
             if found:
-                keys[str(folder) if several else folder.name] = found
+                shown = folder.with_name("(tables of all)") if folder.name == "logs" else folder
+                keys[str(shown) if several else shown.name] = found
     return keys
 
 
