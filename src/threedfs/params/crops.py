@@ -11,7 +11,10 @@ from threedfs.params.field import parameter
 class CropsParams:
     """What part of the source's frames is looked at closely, and how finely."""
 
-    whole: bool = parameter(False, "take whole frames; crops.longest_side limits them, as where there is no object")
+    whole: bool = parameter(
+        False,
+        "take whole frames, as where no object is, with the depth range of `keyframes`; crops.longest_side limits them",
+    )
     longest_side: int = parameter(
         960, "longer side of a frame that is taken whole; smaller sources keep their size", unit="pixel", minimum=64
     )
