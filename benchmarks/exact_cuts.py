@@ -14,7 +14,7 @@ from __future__ import annotations
 
 import argparse
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -125,11 +125,16 @@ def measure_cut(
     return found
 
 
+def read_settings(changes: Iterable[str]) -> dict[str, Any]:
+    """Return the settings that changes, KEY=VALUE each, name."""
+    return {key: yaml.safe_load(value) for key, _, value in (change.partition("=") for change in changes)}
+
+
 def measure_changes(folder: Path, changes: list[str], together: bool) -> dict[str, float]:
     """Return the IoU of both cuts and of the voxels as they are, and with each change alone, or with all of them."""
     truth, found = read_true_masks(folder), {}
     for made in [[], changes] if together else [[], *([change] for change in changes)]:
-        settings = {key: yaml.safe_load(value) for key, _, value in (change.partition("=") for change in made)}
+        settings = read_settings(made)
         for cut in ("images", "joint"):
             labelled = cut_anew(folder, cut, folder / "10_segment/superpixels", None, settings)
             found |= measure_cut(folder, cut, labelled, truth, "".join(f" {change}" for change in made))

@@ -128,6 +128,12 @@ def test_cameras_are_paired_by_the_names_of_their_frames(tmp_path):
     others = write_cameras(tmp_path / "others.json", name="left_{}")
     with pytest.raises(UserError, match=r"named like those of .*mine.json, such as 000000, found 0; .*like left_0"):
         score_cameras(mine, others)
+    document = json.loads(mine.read_text())
+    document["frames"] += json.loads(short.read_text())["frames"]
+    both = tmp_path / "both.json"
+    both.write_text(json.dumps(document))
+    with pytest.raises(UserError, match=r"both.json: expected one camera of each frame, found several of 000000"):
+        score_cameras(both, mine)
 
 
 def test_the_command_prints_and_writes_the_figures(ball, tmp_path, capsys):

@@ -119,7 +119,13 @@ def _align(cameras: Path, truth: Path) -> tuple[dict[str, np.ndarray], dict[str,
 
 
 def _read_poses(path: Path) -> dict[str, np.ndarray]:
-    return {_name_frame(camera.name): camera.cam_from_world for camera in read_given_cameras(path)}
+    poses: dict[str, np.ndarray] = {}
+    for camera in read_given_cameras(path):
+        name = _name_frame(camera.name)
+        if name in poses:
+            raise UserError(f"{path}: expected one camera of each frame, found several of {name}; remove all but one.")
+        poses[name] = camera.cam_from_world
+    return poses
 
 
 def _name_frame(name: str) -> str:
