@@ -16,6 +16,7 @@ from pathlib import Path
 
 import cv2
 import numpy as np
+from command import run_command
 from scipy.io import loadmat
 from skimage.morphology import skeletonize
 
@@ -24,6 +25,7 @@ from threedfs.edges.structured import structured_contours
 from threedfs.edges.thin import thin
 from threedfs.edges.training.picture import contour_pixels
 from threedfs.edges.training.train import held_out_renders
+from threedfs.errors import UserError
 from threedfs.evaluate.contours import ContourScores, count_matches, score_contours
 from threedfs.evaluate.scores import Metric
 from threedfs.io.contour_forest import read_forest
@@ -66,6 +68,8 @@ def main() -> None:
 def read_truths(folder: Path, count: int) -> Truths:
     """Read images evenly spread over a folder, each with the contours of its annotators."""
     names = sorted(path.stem for path in (folder / "groundTruth").glob("*.mat"))
+    if not names:
+        raise UserError(f"{folder}: expected groundTruth/NAME.mat and images/NAME.jpg, found no truth.")
     truths = []
     for index in np.unique(np.linspace(0, len(names) - 1, min(count, len(names))).round().astype(int)):
         image = cv2.imread(str(folder / "images" / f"{names[index]}.jpg"))
@@ -144,4 +148,4 @@ def print_costs() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    run_command(main)

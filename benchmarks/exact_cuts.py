@@ -22,6 +22,7 @@ from unittest.mock import patch
 
 import numpy as np
 import yaml
+from command import run_command
 from exact_depth import find_filmed_pixels
 
 from threedfs.evaluate.masks import intersection_over_union
@@ -184,4 +185,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    run_command(main)

@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
+from command import run_command
 
 from threedfs.evaluate.rendering import filmed_pixels, sample_nearest
 from threedfs.evaluate.true_cameras import relate_cameras
@@ -83,4 +84,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    run_command(main)

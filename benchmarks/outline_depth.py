@@ -13,6 +13,7 @@ import argparse
 from pathlib import Path
 
 import numpy as np
+from command import run_command
 from exact_depth import read_true_depths
 
 from threedfs.evaluate.rendering import sample_nearest
@@ -47,4 +48,4 @@ def main() -> None:
 
 
 if __name__ == "__main__":
-    main()
+    run_command(main)
