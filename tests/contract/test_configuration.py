@@ -155,10 +155,16 @@ def test_every_variant_of_the_ablation_changes_a_default(defaults):
 def test_the_printed_variant_is_the_preset_of_the_paper(defaults):
     printed = yaml.safe_load((ROOT / "config/ablation.yaml").read_text())["variants"]["paper"]
     preset = yaml.safe_load((ROOT / "config/presets/paper.yaml").read_text())
+    assert preset["spectral_matting"]["inner_level"] == preset["segment"]["inner_level"]
+    levels = ("outer_level", "inner_level")  # shares of the clip distance, which is not the variant's
     for stage, own in printed.items():
         changed = {name: value for name, value in preset[stage].items() if value != defaults[stage][name]}
         changed.pop("field", None)  # the variant takes the field of the others
-        assert own == changed
+        assert own.keys() - {*levels} == changed.keys() - {*levels}
+        assert all(own[name] == changed[name] for name in own.keys() - {*levels})
+    for level in levels:
+        distance = {**defaults["segment"], **printed["segment"]}[level] * defaults["fuse_object"]["clip_distance"]
+        assert preset["segment"][level] * preset["fuse_object"]["clip_distance"] == pytest.approx(distance, abs=0.01)
 
 
 def test_paper_preset_differs_from_the_defaults_where_it_speaks(defaults):
