@@ -145,6 +145,21 @@ def test_the_printed_table_is_of_the_paper_and_of_the_benchmarks_images(defaults
     assert {**matting, "methods": 0, "sequences": 0} == {**printed, "methods": 0, "sequences": 0}
 
 
+def test_contours_are_compared_on_the_sequences_of_the_benchmark(defaults):
+    contours = yaml.safe_load((ROOT / "config/contours.yaml").read_text())
+    benchmark = yaml.safe_load((ROOT / "config/benchmark.yaml").read_text())
+    check_configuration(merged(defaults, contours), configuration_schema())
+    assert all(contours[key] == benchmark[key] for key in ("frames", "keyframes_at_truth", "render", "keyframes"))
+    gradients = {name: entry for name, entry in contours["sequences"].items() if "settings" not in entry}
+    assert gradients == {name: entry for name, entry in benchmark["sequences"].items() if entry.get("object", True)}
+    settings = {"edges": {"method": "structured"}}
+    assert settings["edges"]["method"] != defaults["edges"]["method"]
+    for name, entry in gradients.items():
+        dataset = f"{entry.get('dataset', contours['dataset'])}_learned"
+        assert contours["sequences"][f"{name}_learned"] == {**entry, "dataset": dataset, "settings": settings}
+    assert len(contours["sequences"]) == 2 * len(gradients)
+
+
 def test_every_variant_of_the_ablation_changes_a_default(defaults):
     ablation = yaml.safe_load((ROOT / "config/ablation.yaml").read_text())
     check_configuration({**defaults, **ablation}, configuration_schema())

@@ -77,7 +77,8 @@ of `threedfs run`. Several files can be given together; where they differ, the l
 `--configfile my.yaml config/presets/paper.yaml`. Sections are merged key by key, so a second file adds
 its sequences to those of the first; lists and single values are replaced. `benchmark.yaml` is the whole benchmark,
 `printed.yaml` the paper's table with its constants, `matting.yaml` four of its rows with the matting that it tried,
-`suspects.yaml` one of its takes with one thing changed at a time that the paper leaves open.
+`suspects.yaml` one of its takes with one thing changed at a time that the paper leaves open, `contours.yaml` the
+benchmark's sequences by gradients and by learned contours.
 One video needs no file: `snakemake --cores 2 --config video=path/to/my.mp4 dataset=mine`. Other values can be given in
 the same way (`seed`, `store`, `store_fallback`, `'methods=[fused_sdf, tsdf]'`, `'depth={iterations: 5}'`); not with a
 dot, which Snakemake refuses.
