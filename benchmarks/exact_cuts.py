@@ -7,7 +7,8 @@ images again, alone (2D GC of Section 4.3) and jointly with the voxels, with the
 superpixels split where they straddle the true outline; with colours learnt in every round from true masks; with both.
 Prints the mean IoU over the keyframes, in crops, of the pixels and of the labelled voxels' outline (gc_2d3d_voxel),
 beside the best that the superpixels allow and the outline of the fused field. With changes to settings of `segment`
-it prints the IoU as it is and with these instead, each alone or all together.
+it prints the IoU as it is and with these instead, each alone or all together. Beside the values of the setting, `roi`
+can be `region`: what the scene's fusion takes for the region of interest, in the place of the object's box.
 """
 
 from __future__ import annotations
@@ -15,6 +16,7 @@ from __future__ import annotations
 import argparse
 import tempfile
 from collections.abc import Iterable, Mapping
+from contextlib import nullcontext
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any
@@ -23,7 +25,7 @@ from unittest.mock import patch
 import numpy as np
 import yaml
 from command import run_command
-from exact_depth import find_filmed_pixels
+from exact_depth import find_filmed_pixels, find_render
 
 from threedfs.evaluate.masks import intersection_over_union
 from threedfs.evaluate.rendering import sample_nearest
@@ -34,14 +36,15 @@ from threedfs.io.images import read_mask
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.segmentation import SEGMENTATION, Segmentation, read_segmentation
 from threedfs.io.superpixels import read_superpixels, write_superpixels
-from threedfs.io.volumes import read_silhouettes
+from threedfs.io.volumes import read_silhouettes, read_volume
 from threedfs.job import Job
 from threedfs.object.silhouettes import draw_silhouette
 from threedfs.params.schema import make_params
 from threedfs.params.segment import SegmentParams
 from threedfs.progress import Progress
-from threedfs.segment import joint
+from threedfs.segment import gather, joint
 from threedfs.segment.energy import BACKGROUND, OBJECT
+from threedfs.segment.gather import box_of_grid
 from threedfs.segment.outline import surround_voxels
 from threedfs.segment.superpixels import Superpixels, join_superpixels
 from threedfs.stages import segment
@@ -51,9 +54,9 @@ _FIELDS = {"fused": "07_fusion/object.zarr.zip", "deformed": "09_deform/volume.z
 
 def read_true_masks(folder: Path) -> dict[str, np.ndarray]:
     """Return the true masks (H, W) bool of all keyframes, in their crops."""
-    valid = read_crops(folder / "04_crops/crops.zarr.zip").valid_of
+    valid, masks = read_crops(folder / "04_crops/crops.zarr.zip").valid_of, find_render(folder) / "masks"
     return {
-        name: sample_nearest(read_mask(folder / f"00_render/masks/{name}.png"), pixels, False) & valid(name)
+        name: sample_nearest(read_mask(masks / f"{name}.png"), pixels, False) & valid(name)
         for name, pixels in find_filmed_pixels(folder).items()
     }
 
@@ -74,7 +77,10 @@ def cut_anew(
 ) -> Segmentation:
     """Cut anew, with superpixels of a folder, colours of true masks if any, and changed settings."""
     params = read_arrays(folder / f"10_segment/{cut}.zarr.zip", SEGMENTATION)[1]["parameters"] | changes
-    learn = joint._learn_colors
+    learn, in_region = joint._learn_colors, nullcontext()
+    if params["roi"] == "region":
+        region = box_of_grid(read_volume(folder / "03_scene/volume.zarr.zip").grid)
+        params["roi"], in_region = "grid", patch.object(gather, "box_of_grid", return_value=region)
 
     def learn_from_truth(images, labels, *others):
         exact = {name: images[name].superpixels.share(truth[name]) > 0.5 for name in labels}
@@ -84,6 +90,7 @@ def cut_anew(
     with (
         tempfile.TemporaryDirectory() as scratch,
         patch.object(joint, "_learn_colors", learn_from_truth if truth else learn),
+        in_region,
     ):
         segment.run(
             field=folder / _FIELDS[field],

@@ -11,6 +11,7 @@ Cameras stay as estimated: true depth is divided by their scale. So do the plane
 from __future__ import annotations
 
 import argparse
+import filecmp
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -32,6 +33,15 @@ from threedfs.params.rendered import DEPTH_SCALE
 from threedfs.store.made import Made
 
 
+def find_render(folder: Path) -> Path:
+    """Return the folder of a rendered run's film and truth: its own, or that of a run beside it of the same frames."""
+    frames = "01_frames/frames.zarr.zip"
+    for render in (folder / "00_render", *sorted(folder.resolve().parent.glob("*/00_render"))):
+        if render.is_dir() and filecmp.cmp(folder / frames, render.parent / frames, shallow=False):
+            return render
+    raise SystemExit(f"{folder}: expected 00_render, here or in a run beside it of the same frames; found none.")
+
+
 def find_filmed_pixels(folder: Path) -> dict[str, np.ndarray]:
     """Return where each pixel of the keyframes' crops lies in the source's frames, (H, W, 2) float64 each."""
     frames, solved = read_frames(folder / "01_frames/frames.zarr.zip"), read_poses(folder / "02_poses/poses.json")
@@ -48,9 +58,10 @@ def read_true_depths(folder: Path) -> Iterator[tuple[str, np.ndarray, np.ndarray
     NaN where the renderer saw nothing.
     """
     frames, solved = read_frames(folder / "01_frames/frames.zarr.zip"), read_poses(folder / "02_poses/poses.json")
-    true_cameras = relate_cameras(read_given_cameras(folder / "00_render/cameras.json", None), solved.views, frames)
+    render = find_render(folder)
+    true_cameras = relate_cameras(read_given_cameras(render / "cameras.json", None), solved.views, frames)
     places = find_filmed_pixels(folder)
-    images = find_depth_images(folder / "00_render/depth", places)
+    images = find_depth_images(render / "depth", places)
     lacking = sorted(set(places) - set(images))
     if lacking:
         raise SystemExit(f"{folder}: expected true depth of all keyframes, found none of {', '.join(lacking)}.")

@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 from command import run_command
-from exact_depth import read_true_depths
+from exact_depth import find_render, read_true_depths
 
 from threedfs.evaluate.rendering import sample_nearest
 from threedfs.io.depth_maps import read_depth_map
@@ -24,9 +24,9 @@ from threedfs.segment.outline import depth_inside
 
 def measure_outline(folder: Path, reach: float) -> np.ndarray:
     """Return the relative errors (N,) of depth in the true masks of a run, within `reach` pixels of their outlines."""
-    errors = []
+    errors, masks = [], find_render(folder) / "masks"
     for name, pixels, truth in read_true_depths(folder):
-        inside = depth_inside(sample_nearest(read_mask(folder / f"00_render/masks/{name}.png"), pixels, False))
+        inside = depth_inside(sample_nearest(read_mask(masks / f"{name}.png"), pixels, False))
         depth = read_depth_map(folder / f"06_depth/{name}.zarr.zip").depth
         near = (inside > 0) & (inside <= reach) & np.isfinite(truth) & np.isfinite(depth)
         errors.append(np.abs(depth[near] - truth[near]) / truth[near])

@@ -72,7 +72,8 @@ def take_points(
     """Choose the points that may correct a field, and say how far each is trusted.
 
     Differs from the paper, which takes every point: a point counts if the field is known and near zero there, and
-    ascends along the point's normal. Its trust is the cosine between the two, times its sightings.
+    ascends along the point's normal. Its trust is the cosine between the two, times its share of
+    `full_sightings`, 1 at most.
 
     Parameters
     ----------

@@ -77,8 +77,8 @@ def compute_cost_volume(
     Notes
     -----
     Differs from the paper: patches are compared through the candidate's plane, not axis by axis around the
-    reprojected point; variances have a floor, and a view that misses a pixel counts with a neutral error
-    instead of not at all, which would favour depths that few views see.
+    reprojected point, and variances have a floor. The paper does not say what a view that misses a pixel counts: here
+    a neutral error, as leaving it out would favour depths that few views see.
     """
     height, width = reference_grey.shape
     patches = describe_patches(reference_grey, patch_radius, variance_floor)

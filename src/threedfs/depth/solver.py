@@ -77,8 +77,9 @@ def optimise_depth(
     (a solve of Eq. 8 before the first iteration): the paper does not say from where.
 
     Differs from the paper: iterations before the last few put 2x2 pixels together. Sums over pixels then have a
-    quarter of the terms and differences of second order are four times as large, so the smoothness weight is a
-    sixteenth of what it is at full resolution.
+    quarter of the terms and differences of second order are four times as large (of first order twice), so the
+    smoothness weight is a sixteenth (a quarter) of what it is at full resolution. Where the object is larger in its
+    image, `magnification` does the opposite, so that it is as smooth as in a small one.
 
     Also beyond the paper: from half of the iterations on, smoothing gives way where the surface bends sharply
     (`release_bends`), which keeps the background from being drawn towards the object around its silhouette.

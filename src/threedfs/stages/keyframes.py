@@ -37,8 +37,8 @@ def run(
 ) -> None:
     """Read frames, poses and points; write keyframes.json.
 
-    Differs from the paper: LSD-SLAM's criterion (3.1) only parts the path into sectors; the sharpest frame of each
-    is its keyframe, and frames of the given masks always are.
+    Differs from the paper: LSD-SLAM's criterion (3.1) only parts the path into sectors. Each offers its sharpest frame,
+    and of these the farthest apart become keyframes. Frames of the given masks always do, for their sectors.
 
     Raises
     ------
