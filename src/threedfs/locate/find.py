@@ -66,7 +66,8 @@ def find_object(
     """Find the object in a field, and its foot on the plane.
 
     Differs from the paper: voxels are above the support from `least_height` on, some voxels or more where the plane is
-    noisy (paper: 0.05 of the spread of its points), and the foot below it is the object's too; `choose_component` says which one.
+    noisy (paper: 0.05 of the spread of its points), and the foot below it is the object's too; `choose_component` says
+    which one.
 
     Parameters
     ----------
