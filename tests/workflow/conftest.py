@@ -115,8 +115,9 @@ class Project:
 
     @property
     def forking(self) -> dict[str, str]:
-        """The same with jobs that are forked."""
-        return {**os.environ, "PYTHONPATH": str(self.folder / "src"), "PATH": f"{BIN}:{os.environ['PATH']}"}
+        """The same with jobs that are forked. Output is buffered, as it is for most people."""
+        inherited = {name: value for name, value in os.environ.items() if name != "PYTHONUNBUFFERED"}
+        return {**inherited, "PYTHONPATH": str(self.folder / "src"), "PATH": f"{BIN}:{os.environ['PATH']}"}
 
     def run(self, *arguments: str, good: bool = True) -> str:
         """Run snakemake and return all that it printed; fail unless it ended as expected."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import io
 import sys
 import webbrowser
 from collections.abc import Sequence
@@ -39,6 +40,8 @@ _SCORED = ("masks", "mesh", "cameras")
 def main(words: Sequence[str] | None = None) -> int:
     """Do what the command line says; return the exit status."""
     arguments = _make_parser().parse_args(words)
+    if isinstance(sys.stdout, io.TextIOWrapper):  # in a pipe or a file, too, what goes wrong comes after what went well
+        sys.stdout.reconfigure(line_buffering=True)
     try:
         return arguments.act(arguments)
     except UserError as fault:
