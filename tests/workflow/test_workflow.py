@@ -338,7 +338,7 @@ def test_variants_cut_again_with_their_settings_and_get_a_table(finished):
     output = finished.run("--configfile", "variants.yaml")
     expected = {"segment": 2, "cut_object": 3, "pixel_masks": 3, "evaluate": 6, "collect": 1}
     # masks of pixels do not depend on how a mesh is cut: those of the second variant are those of none
-    assert jobs_done(output) + jobs_taken(output) == Counter(expected)
+    assert jobs_done(output) + jobs_taken(output) == Counter(expected), output
     results = finished.folder / "results/sample"
     plain, other = (
         json.loads((results / f"10_segment/joint{name}.zarr.zip").read_text()) for name in ("", "@no_table")
