@@ -25,7 +25,7 @@ from unittest.mock import patch
 import numpy as np
 import yaml
 from command import run_command
-from exact_depth import find_filmed_pixels, find_render
+from exact_depth import find_filmed_pixels
 
 from threedfs.evaluate.masks import intersection_over_union
 from threedfs.evaluate.rendering import sample_nearest
@@ -42,6 +42,7 @@ from threedfs.object.silhouettes import draw_silhouette
 from threedfs.params.schema import make_params
 from threedfs.params.segment import SegmentParams
 from threedfs.progress import Progress
+from threedfs.run_end.film import find_film
 from threedfs.segment import gather, joint
 from threedfs.segment.energy import BACKGROUND, OBJECT
 from threedfs.segment.gather import box_of_grid
@@ -54,7 +55,7 @@ _FIELDS = {"fused": "07_fusion/object.zarr.zip", "deformed": "09_deform/volume.z
 
 def read_true_masks(folder: Path) -> dict[str, np.ndarray]:
     """Return the true masks (H, W) bool of all keyframes, in their crops."""
-    valid, masks = read_crops(folder / "04_crops/crops.zarr.zip").valid_of, find_render(folder) / "masks"
+    valid, masks = read_crops(folder / "04_crops/crops.zarr.zip").valid_of, find_film(folder) / "masks"
     return {
         name: sample_nearest(read_mask(masks / f"{name}.png"), pixels, False) & valid(name)
         for name, pixels in find_filmed_pixels(folder).items()

@@ -11,7 +11,6 @@ Cameras stay as estimated: true depth is divided by their scale. So do the plane
 from __future__ import annotations
 
 import argparse
-import filecmp
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -19,27 +18,17 @@ import numpy as np
 from command import run_command
 
 from threedfs.evaluate.rendering import filmed_pixels, sample_nearest
-from threedfs.evaluate.true_cameras import relate_cameras
 from threedfs.io.arrays import read_arrays
 from threedfs.io.crops import read_crops
 from threedfs.io.depth_maps import DEPTH_MAP, DepthMap, write_depth_map
 from threedfs.io.frames import read_frames
-from threedfs.io.given_cameras import read_given_cameras
 from threedfs.io.keyframes import read_keyframes
 from threedfs.io.poses import read_poses
 from threedfs.io.truth import read_true_depth
 from threedfs.io.truth_files import find_depth_images
 from threedfs.params.rendered import DEPTH_SCALE
+from threedfs.run_end.film import find_film, relate_film
 from threedfs.store.made import Made
-
-
-def find_render(folder: Path) -> Path:
-    """Return the folder of a rendered run's film and truth: its own, or that of a run beside it of the same frames."""
-    frames = "01_frames/frames.zarr.zip"
-    for render in (folder / "00_render", *sorted(folder.resolve().parent.glob("*/00_render"))):
-        if render.is_dir() and filecmp.cmp(folder / frames, render.parent / frames, shallow=False):
-            return render
-    raise SystemExit(f"{folder}: expected 00_render, here or in a run beside it of the same frames; found none.")
 
 
 def find_filmed_pixels(folder: Path) -> dict[str, np.ndarray]:
@@ -57,16 +46,14 @@ def read_true_depths(folder: Path) -> Iterator[tuple[str, np.ndarray, np.ndarray
 
     NaN where the renderer saw nothing.
     """
-    frames, solved = read_frames(folder / "01_frames/frames.zarr.zip"), read_poses(folder / "02_poses/poses.json")
-    render = find_render(folder)
-    true_cameras = relate_cameras(read_given_cameras(render / "cameras.json", None), solved.views, frames)
+    true_cameras, source_shape = relate_film(folder), read_frames(folder / "01_frames/frames.zarr.zip").source_shape
     places = find_filmed_pixels(folder)
-    images = find_depth_images(render / "depth", places)
+    images = find_depth_images(find_film(folder) / "depth", places)
     lacking = sorted(set(places) - set(images))
     if lacking:
         raise SystemExit(f"{folder}: expected true depth of all keyframes, found none of {', '.join(lacking)}.")
     for name, pixels in places.items():
-        image = read_true_depth(images[name], DEPTH_SCALE, frames.source_shape, None, None)
+        image = read_true_depth(images[name], DEPTH_SCALE, source_shape, None, None)
         yield name, pixels, sample_nearest(image, pixels, np.nan) / true_cameras.from_scene.scale
 
 

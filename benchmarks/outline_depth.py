@@ -14,17 +14,18 @@ from pathlib import Path
 
 import numpy as np
 from command import run_command
-from exact_depth import find_render, read_true_depths
+from exact_depth import read_true_depths
 
 from threedfs.evaluate.rendering import sample_nearest
 from threedfs.io.depth_maps import read_depth_map
 from threedfs.io.images import read_mask
+from threedfs.run_end.film import find_film
 from threedfs.segment.outline import depth_inside
 
 
 def measure_outline(folder: Path, reach: float) -> np.ndarray:
     """Return the relative errors (N,) of depth in the true masks of a run, within `reach` pixels of their outlines."""
-    errors, masks = [], find_render(folder) / "masks"
+    errors, masks = [], find_film(folder) / "masks"
     for name, pixels, truth in read_true_depths(folder):
         inside = depth_inside(sample_nearest(read_mask(masks / f"{name}.png"), pixels, False))
         depth = read_depth_map(folder / f"06_depth/{name}.zarr.zip").depth

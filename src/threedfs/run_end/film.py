@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import filecmp
 from pathlib import Path
 
 from threedfs.evaluate.true_cameras import TrueCameras, relate_cameras
@@ -11,9 +12,16 @@ from threedfs.io.poses import read_poses
 
 
 def find_film(results: Path) -> Path:
-    """Return the folder of a rendered sequence's film; a twin with given poses, NAME_posed, has that of its take."""
-    own = results / "00_render"
-    return own if own.is_dir() else results.with_name(results.name.removesuffix("_posed")) / "00_render"
+    """Return the folder of a rendered sequence's film: its own, or that of a sequence beside it with the same frames.
+
+    Where there is none, its own is named, which does not exist.
+    """
+    own, frames = results / "00_render", "01_frames/frames.zarr.zip"
+    if own.is_dir() or not (results / frames).is_file():
+        return own
+    films = sorted(results.absolute().parent.glob("*/00_render"))
+    others = (film for film in films if (film.parent / frames).is_file())
+    return next((film for film in others if filecmp.cmp(results / frames, film.parent / frames, shallow=False)), own)
 
 
 def relate_film(results: Path) -> TrueCameras:
