@@ -14,10 +14,15 @@ from threedfs.locate.find import stand_on
 from threedfs.segment.extent import find_extent
 
 
+def find(scene, threads: int = 1) -> np.ndarray:
+    """Return the voxels that images show to be the object's."""
+    gather, cut = rules(replace(DEFAULTS, outer_margin=15, sdf_weight=1.0, iterations=3))
+    return find_extent(scene, gather, cut, np.random.default_rng(0), lambda message: None, threads)
+
+
 def reach(scene) -> float:
     """Return the height up to which images show the object."""
-    gather, cut = rules(replace(DEFAULTS, outer_margin=15, sdf_weight=1.0, iterations=3))
-    voxels = find_extent(scene, gather, cut, np.random.default_rng(0), lambda message: None)
+    voxels = find(scene)
     return float(world_from_index(scene.located.grid, np.argwhere(voxels))[:, 2].max())
 
 
@@ -43,3 +48,7 @@ def test_what_the_field_has_lost_is_found_again(whole):
     left = world_from_index(grid, np.argwhere(halved.located.voxels))[:, 2].max()
     assert left < CENTRE[2] + grid.spacing
     assert reach(halved) > CENTRE[2] + 0.7 * RADIUS
+
+
+def test_no_number_of_threads_changes_the_extent(whole):
+    assert (find(whole) == find(whole, threads=3)).all()

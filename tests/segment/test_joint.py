@@ -39,13 +39,14 @@ def rules(params: SegmentParams) -> tuple[GatherRule, CutRule]:
     )
 
 
-def segment(scene, params=DEFAULTS, *, alone: bool = False):
+def segment(scene, params=DEFAULTS, *, alone: bool = False, threads: int = 1):
     """Return evidence of the images and the cut."""
     gather, rule = rules(params)
     rng = np.random.default_rng(0)
     volume, bounds = gather_voxels(scene, gather)
-    images = gather_images(scene, volume, bounds, picture_support(scene, bounds, gather), gather, rng)
-    return images, segment_jointly(images, None if alone else volume, rule, rng)
+    table = picture_support(scene, bounds, gather, threads)
+    images = gather_images(scene, volume, bounds, table, gather, rng, threads)
+    return images, segment_jointly(images, None if alone else volume, rule, rng, threads=threads)
 
 
 def overlap(masks, truth) -> float:
@@ -63,6 +64,16 @@ def ball():
     """The scene, its true masks, the evidence and the cut."""
     scene, truth = make_scene()
     return scene, truth, *segment(scene)
+
+
+@pytest.mark.parametrize("first_labels", ["field", "random"])
+def test_no_number_of_threads_changes_the_cut(ball, first_labels):
+    scene = ball[0]
+    params = replace(DEFAULTS, first_labels=first_labels)
+    (_, one), (_, three) = (segment(scene, params, threads=threads) for threads in (1, 3))
+    assert (one.voxels == three.voxels).all()
+    assert all((one.superpixels[name] == three.superpixels[name]).all() for name in one.superpixels)
+    assert one.energies.tobytes() == three.energies.tobytes()
 
 
 def test_ball_is_found_in_images_and_voxels(ball):

@@ -107,7 +107,7 @@ rule locate:
         "results/{sequence}/benchmarks/locate.tsv"
     conda:
         "../../envs/threedfs.yaml"
-    threads: 1
+    threads: THREADS
     resources:
         mem_mb=memory_of("locate", grid="fuse_scene"),
         runtime=minutes(30),

@@ -37,6 +37,7 @@ def fit_masks(
     ramp: float,
     tolerance: float,
     least_views: int,
+    threads: int = 1,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return the field (nx, ny, nz) float32 in line with the masks, and which voxels (nx, ny, nz) bool it fills.
 
@@ -64,9 +65,11 @@ def fit_masks(
         Share of the views that may show a voxel of the hull outside their mask.
     least_views : int
         Views that show a voxel on a gap before it is filled.
+    threads : int
+        Cores used; the result does not depend on it.
     """
-    (hull,) = measure_hull(masks, views, valid, grid, allowed, ramp=ramp, tolerances=(tolerance,))
-    filled = find_gaps(solid, hull, allowed, masks, views, grid, least_views)
+    (hull,) = measure_hull(masks, views, valid, grid, allowed, ramp=ramp, tolerances=(tolerance,), threads=threads)
+    filled = find_gaps(solid, hull, allowed, masks, views, grid, least_views, threads=threads)
     fitted = np.where(filled, np.minimum(sdf, hull), sdf)
     return np.where(allowed, np.maximum(fitted, hull), fitted).astype(np.float32), filled
 

@@ -17,7 +17,12 @@ _RAMP, _TOLERANCE, _VIEWS = 3.0, 0.5, 4
 
 
 def find_extent(
-    scene: Scene, gather: GatherRule, cut: CutRule, rng: np.random.Generator, note: Callable[[str], None]
+    scene: Scene,
+    gather: GatherRule,
+    cut: CutRule,
+    rng: np.random.Generator,
+    note: Callable[[str], None],
+    threads: int = 1,
 ) -> np.ndarray:
     """Return the object's voxels (nx, ny, nz) bool by a joint segmentation of small images and the scene's voxels.
 
@@ -32,10 +37,13 @@ def find_extent(
     rng : numpy.random.Generator
     note : callable
         Takes a message to report progress.
+    threads : int
+        Cores used; the result does not depend on it.
     """
     volume, bounds = gather_voxels(scene, gather)
-    images = gather_images(scene, volume, bounds, picture_support(scene, bounds, gather), gather, rng)
-    found = segment_jointly(images, volume, cut, rng, note)
+    table = picture_support(scene, bounds, gather, threads)
+    images = gather_images(scene, volume, bounds, table, gather, rng, threads)
+    found = segment_jointly(images, volume, cut, rng, note, threads)
     voxels = found.voxels == OBJECT
     if not voxels.any():
         return voxels
@@ -51,5 +59,6 @@ def find_extent(
         ramp=_RAMP,
         tolerance=_TOLERANCE,
         least_views=_VIEWS,
+        threads=threads,
     )
     return largest_piece(voxels | filled)

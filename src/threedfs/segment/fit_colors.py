@@ -9,6 +9,7 @@ from sklearn.exceptions import ConvergenceWarning
 from sklearn.mixture import GaussianMixture
 
 from threedfs.errors import UserError
+from threedfs.read_ahead import map_ahead
 from threedfs.segment.color_model import ColorModel
 from threedfs.segment.mixture import Mixture
 
@@ -19,9 +20,16 @@ _FIRST_STEPS, _NEXT_STEPS = 30, 8
 
 
 def fit_color_model(
-    object_lab: np.ndarray, background_lab: np.ndarray, components: int, before: ColorModel | None, seed: int
+    object_lab: np.ndarray,
+    background_lab: np.ndarray,
+    components: int,
+    before: ColorModel | None,
+    seed: int,
+    threads: int = 1,
 ) -> ColorModel:
     """Fit a mixture to the colours (N, 3) of each region, going on from the model before, if there is one.
+
+    With two threads, both at once; the result is the same.
 
     Raises
     ------
@@ -34,10 +42,14 @@ def fit_color_model(
                 f"Expected at least {components} pixels of the {name} to learn its colours from, got {len(lab)}; the "
                 "fused object is hardly in any keyframe, or fills all of them: check its mesh (method fused_sdf)."
             )
-    return ColorModel(
-        _fit(object_lab, components, before and before.of_object, seed),
-        _fit(background_lab, components, before and before.of_background, seed + 1),
+    regions = (
+        (object_lab, before and before.of_object, seed),
+        (background_lab, before and before.of_background, seed + 1),
     )
+    # The steps are few on purpose: each round goes on. Filters of warnings are of the process, so both share one.
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ConvergenceWarning)
+        return ColorModel(*map_ahead(lambda region: _fit(region[0], components, *region[1:]), regions, threads=threads))
 
 
 def _fit(lab, components, before, seed):
@@ -60,7 +72,5 @@ def _fit(lab, components, before, seed):
         init_params="k-means++",
         **start,
     )
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", ConvergenceWarning)  # the steps are few on purpose: each round goes on
-        mixture.fit(lab.astype(np.float64))
+    mixture.fit(lab.astype(np.float64))
     return Mixture(mixture.weights_, mixture.means_, mixture.precisions_cholesky_)

@@ -13,6 +13,7 @@ from scipy import ndimage
 from threedfs.geometry.grid import world_from_index
 from threedfs.geometry.projection import backproject_map
 from threedfs.locate.find import Located
+from threedfs.read_ahead import map_ahead
 from threedfs.segment.color_model import lab_image
 from threedfs.segment.energy import BACKGROUND, OBJECT
 from threedfs.segment.evidence import ImageEvidence, VoxelEvidence
@@ -145,15 +146,15 @@ def gather_voxels(scene: Scene, rule: GatherRule) -> tuple[VoxelEvidence, Bounds
     return VoxelEvidence(grid, scene.sdf, normalised, fixed, first), Bounds(outer, guess, inner, hides)
 
 
-def picture_support(scene: Scene, bounds: Bounds, rule: GatherRule) -> TablePicture | None:
+def picture_support(scene: Scene, bounds: Bounds, rule: GatherRule, threads: int = 1) -> TablePicture | None:
     """Return how the support surface looks around the object, where keyframes show it bare; None if not wanted."""
     if not rule.table:
         return None
-    hides = draw_voxels(bounds.hides, scene.located.grid, scene.views)
+    hides = draw_voxels(bounds.hides, scene.located.grid, scene.views, threads)
     covered = {name: cv2.dilate(mask.astype(np.uint8), np.ones((5, 5))) > 0 for name, mask in hides.items()}
     around = scene.box.grow(rule.table_reach * scene.box.longest)
     solid = world_from_index(scene.located.grid, np.argwhere(bounds.hides))
-    return picture_table(scene.images, scene.views, covered, scene.valid, scene.located.plane, solid, around)
+    return picture_table(scene.images, scene.views, covered, scene.valid, scene.located.plane, solid, around, threads)
 
 
 def box_of_grid(grid: VoxelGrid) -> Box:
@@ -174,6 +175,7 @@ def gather_images(
     table: TablePicture | None,
     rule: GatherRule,
     rng: np.random.Generator,
+    threads: int = 1,
 ) -> dict[str, ImageEvidence]:
     """Return the evidence of each keyframe, by its name.
 
@@ -187,25 +189,26 @@ def gather_images(
     rule : GatherRule
     rng : numpy.random.Generator
         Draws first labels, where they are random.
+    threads : int
+        Cores used; the result does not depend on it.
     """
     outer, guess, inner = (
-        draw_voxels(voxels, scene.located.grid, scene.views) for voxels in (bounds.outer, bounds.guess, bounds.inner)
+        draw_voxels(voxels, scene.located.grid, scene.views, threads)
+        for voxels in (bounds.outer, bounds.guess, bounds.inner)
     )
-    if rule.fill_outer:
-        outer = {name: ndimage.binary_fill_holes(mask) for name, mask in outer.items()}
-    evidence = {}
-    for name, view in scene.views.items():
-        superpixels = scene.superpixels[name]
-        decided = decide_superpixels(superpixels, outer[name], inner[name], rule.decided_share)
-        guessed = superpixels.share(guess[name]) > 0.5
-        if rule.random_first:
-            guessed = rng.random(superpixels.count) < 0.5
+    drawn = {name: rng.random(scene.superpixels[name].count) < 0.5 for name in scene.views} if rule.random_first else {}
+    region = scene.box if rule.roi == "box" else box_of_grid(scene.located.grid)
+
+    def gather(name: str) -> ImageEvidence:
+        superpixels, view = scene.superpixels[name], scene.views[name]
+        over = ndimage.binary_fill_holes(outer[name]) if rule.fill_outer else outer[name]
+        decided = decide_superpixels(superpixels, over, inner[name], rule.decided_share)
+        guessed = drawn[name] if rule.random_first else superpixels.share(guess[name]) > 0.5
         first = np.where(decided == UNDECIDED, np.where(guessed, OBJECT, BACKGROUND), decided).astype(np.uint8)
         points = backproject_map(view, scene.depth[name])
-        region = scene.box if rule.roi == "box" else box_of_grid(scene.located.grid)
         outside = np.isfinite(scene.depth[name]) & ~region.contains(points)
         pairs, weight = _link(scene, volume, name, points, rule)
-        evidence[name] = ImageEvidence(
+        return ImageEvidence(
             view,
             scene.images[name],
             superpixels,
@@ -218,7 +221,8 @@ def gather_images(
             pixels_at(scene.box, view, rule.silhouette_ramp * scene.located.grid.spacing),
             match_table(lab_image(scene.images[name]), *table.predict(view)) if table else None,
         )
-    return evidence
+
+    return dict(zip(scene.views, map_ahead(gather, scene.views, threads=threads), strict=True))
 
 
 def _link(scene, volume, name, points, rule):

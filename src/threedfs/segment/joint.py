@@ -9,6 +9,7 @@ import numpy as np
 
 from threedfs.errors import UserError
 from threedfs.geometry.grid import voxel_places
+from threedfs.read_ahead import map_ahead
 from threedfs.segment.alpha_expansion import expand
 from threedfs.segment.color_model import ColorModel, lab_from_rgb, truncate
 from threedfs.segment.energy import BACKGROUND, EMPTY, OBJECT, LabelGraph, energy, fold_given
@@ -75,6 +76,7 @@ def segment_jointly(
     rule: CutRule,
     rng: np.random.Generator,
     note: Callable[[str], None] = lambda message: None,
+    threads: int = 1,
 ) -> Cut:
     """Label superpixels and voxels by alpha-expansion, with colours and silhouettes renewed in each iteration.
 
@@ -88,6 +90,8 @@ def segment_jointly(
         Draws what the colour models are learnt from.
     note : callable
         Takes a message to report progress.
+    threads : int
+        Cores used; the result does not depend on it.
 
     Raises
     ------
@@ -105,10 +109,10 @@ def segment_jointly(
     views = {name: evidence.view for name, evidence in images.items()}
     valid = {name: evidence.superpixels.index >= 0 for name, evidence in images.items()}
     if volume is not None and rule.first_carving == "cut":
-        labels = _cut_images(images, labels, rule, rng, seed)
+        labels = _cut_images(images, labels, rule, rng, seed, threads)
     for iteration in range(rule.iterations):
         of_images = nodes.split(labels)
-        model = _learn_colors(images, of_images, rule, model, rng, seed)
+        model = _learn_colors(images, of_images, rule, model, rng, seed, threads)
         if volume is not None:
             voxels = nodes.voxels(labels)
             if not (voxels == OBJECT).any():
@@ -116,13 +120,12 @@ def segment_jointly(
                     "segment: expected voxels of the object, found none left; its colours are those of the background, "
                     "or its masks shrank away: lower segment.carve_weight, or use the method fused_sdf."
                 )
-            drawn = draw_voxels(voxels == OBJECT, volume.grid, views)
-            soft = {name: soften_silhouette(mask, images[name].silhouette_reach) for name, mask in drawn.items()}
-            silhouettes.add(np.concatenate([images[name].superpixels.mean(share) for name, share in soft.items()]))
+            drawn = draw_voxels(voxels == OBJECT, volume.grid, views, threads)
+            silhouettes.add(_share_silhouettes(images, drawn, threads))
             if iteration > 0 or rule.first_carving != "none":
                 masks = {name: images[name].superpixels.paint(of_images[name] == OBJECT) for name in images}
-                carved.add(carve_unary(nodes.open_centres, views, masks, valid, rule.carve_tolerance))
-        graph = nodes.connect(model, silhouettes.mean, carved.mean, rule)
+                carved.add(carve_unary(nodes.open_centres, views, masks, valid, rule.carve_tolerance, threads))
+        graph = nodes.connect(model, silhouettes.mean, carved.mean, rule, threads)
         swapped = 0
         now = energy(graph, labels)
         for target in (BACKGROUND, OBJECT, EMPTY) if volume is not None else (BACKGROUND, OBJECT):
@@ -145,14 +148,24 @@ def segment_jointly(
     )
 
 
-def _cut_images(images, labels, rule, rng, seed):
+def _share_silhouettes(images: Mapping[str, ImageEvidence], drawn: Mapping[str, np.ndarray], threads: int):
+    """Return how far each superpixel lies within the voxels' soft silhouette, all keyframes in turn."""
+
+    def share(name: str) -> np.ndarray:
+        return images[name].superpixels.mean(soften_silhouette(drawn[name], images[name].silhouette_reach))
+
+    return np.concatenate(list(map_ahead(share, images, threads=threads)))
+
+
+def _cut_images(images, labels, rule, rng, seed, threads):
     """Return the first labels (open nodes,) after the superpixels' have been cut once by the images alone.
 
     Random masks leave no voxel uncarved; the cut's are the first that know something of the object.
     """
     alone = _Nodes(images, None, rule.voxel_pair_weight)
     first = alone.first_labels()
-    graph = alone.connect(_learn_colors(images, alone.split(first), rule, None, rng, seed), None, None, rule)
+    model = _learn_colors(images, alone.split(first), rule, None, rng, seed, threads)
+    graph = alone.connect(model, None, None, rule, threads)
     for target in (BACKGROUND, OBJECT):
         first = expand(graph, first, target)
     return np.concatenate([first, labels[len(first) :]])
@@ -246,18 +259,21 @@ class _Nodes:
         return found.reshape(self._volume.grid.shape)
 
     def connect(
-        self, model: ColorModel, silhouettes: np.ndarray | None, carved: np.ndarray | None, rule: CutRule
+        self, model: ColorModel, silhouettes: np.ndarray | None, carved: np.ndarray | None, rule: CutRule, threads: int
     ) -> LabelGraph:
         """Return the graph of Eq. 19 under the present colours, silhouettes and carving."""
-        costs = []
-        for evidence in self._images.values():
+
+        def look(evidence: ImageEvidence) -> np.ndarray:
             owner, lab, table = evidence.band
             chance = model.posterior(lab, table)
             cost = [
                 mean_by(truncate(p, rule.color_cap), owner, evidence.superpixels.count) for p in (1 - chance, chance)
             ]
-            costs.append(rule.color_weight * np.stack(cost, axis=1))
-            costs[-1][:, OBJECT] += rule.roi_weight * evidence.outside
+            both = rule.color_weight * np.stack(cost, axis=1)
+            both[:, OBJECT] += rule.roi_weight * evidence.outside
+            return both
+
+        costs = list(map_ahead(look, self._images.values(), threads=threads))
         images = np.concatenate(costs)[self._open_superpixels]
         if silhouettes is not None:
             images += rule.silhouette_weight * silhouette_unary(silhouettes)[self._open_superpixels]
@@ -273,7 +289,7 @@ class _Nodes:
         return self._folded.with_costs(unary)
 
 
-def _learn_colors(images, labels, rule, before, rng, seed):
+def _learn_colors(images, labels, rule, before, rng, seed, threads):
     """Learn both colour models from superpixels drawn among those that have each label at present."""
     lab = []
     for label in (OBJECT, BACKGROUND):
@@ -288,4 +304,4 @@ def _learn_colors(images, labels, rule, before, rng, seed):
             colors.append(evidence.image[evidence.superpixels.paint(chosen)])
         rgb = np.concatenate(colors)
         lab.append(lab_from_rgb(rgb[rng.permutation(len(rgb))[: rule.color_pixels]]))
-    return fit_color_model(lab[0], lab[1], rule.components, before, seed)
+    return fit_color_model(lab[0], lab[1], rule.components, before, seed, threads)

@@ -44,7 +44,7 @@ def log_density(mixture: Mixture, lab: np.ndarray) -> np.ndarray:
     return _sum_components(np.ascontiguousarray(lab), mixture.means, np.ascontiguousarray(factors), offsets)
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def _sum_components(lab, means, factors, offsets):
     """Return log sum exp over components of offset - |(color - mean) factor|^2 / 2; factors are upper triangular."""
     result = np.empty(len(lab))

@@ -49,7 +49,7 @@ def _space_seeds(side: int, spacing: float) -> np.ndarray:
     return ((np.arange(number) + 0.5) * side / number).astype(np.int64)
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def _assign(lab, valid, centres, reach, scale, nearest):
     """Give each pixel the centre of least distance among those at most `reach` away in rows and columns."""
     height, width = valid.shape
@@ -78,7 +78,7 @@ def _assign(lab, valid, centres, reach, scale, nearest):
                 nearest[row, column] = -1
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def _move(lab, nearest, centres):
     """Move each centre to the mean of its pixels; one without any stays."""
     height, width = nearest.shape
@@ -99,7 +99,7 @@ def _move(lab, nearest, centres):
                 centres[k, c] = total[k, c] / members[k]
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def _connect(nearest, smallest):
     """Number connected pieces row by row; a small one joins one beside it, if there is any."""
     height, width = nearest.shape

@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 from numba import njit
 
+from threedfs.read_ahead import map_ahead
 from threedfs.segment.color_model import TableMatch, lab_image
 from threedfs.segment.light import relight_table
 from threedfs.types import Box, Plane, View
@@ -102,7 +103,7 @@ def match_table(
     return TableMatch(known, color, density.astype(np.float32), beneath)
 
 
-@njit(cache=True)
+@njit(nogil=True, cache=True)
 def _match_around(lab, color, known):
     """Return the least squared distance (H, W) of each pixel's colour from those known within a pixel around it.
 
@@ -131,6 +132,7 @@ def picture_table(
     plane: Plane,
     solid: np.ndarray,
     box: Box,
+    threads: int = 1,
 ) -> TablePicture:
     """Take a picture of the support plane, seen from above, out of all views.
 
@@ -150,16 +152,26 @@ def picture_table(
         World points inside the object.
     box : Box
         Around what the picture is needed for, standing on the plane; the picture lies along its sides.
+    threads : int
+        Cores used; the result does not depend on it.
     """
     world_from_picture, size = _lay_out(plane, box, views)
-    colors, shown = [], []
-    for name, view in views.items():
+
+    colors = np.empty((len(views), size[1], size[0], 3), np.float32)
+    shown = np.empty(colors.shape[:3], bool)
+
+    def lay_flat(rank: int, name: str) -> None:
+        view = views[name]
         picture_from_image = np.linalg.inv(view.px_from_world @ world_from_picture)
         clear = (valid[name] & ~covered[name]).astype(np.float32)
-        colors.append(cv2.warpPerspective(lab_image(images[name]), picture_from_image, size, flags=cv2.INTER_LINEAR))
-        shown.append(cv2.warpPerspective(clear, picture_from_image, size, flags=cv2.INTER_LINEAR) > 0.99)
-        shown[-1] &= _in_front(view, world_from_picture, size)
-    color, spread, known = _combine(np.stack(colors), np.stack(shown))
+        lab = lab_image(images[name])
+        cv2.warpPerspective(lab, picture_from_image, size, dst=colors[rank], flags=cv2.INTER_LINEAR)
+        shown[rank] = cv2.warpPerspective(clear, picture_from_image, size, flags=cv2.INTER_LINEAR) > 0.99
+        shown[rank] &= _in_front(view, world_from_picture, size)
+
+    for _ in map_ahead(lambda item: lay_flat(*item), enumerate(views), threads=threads):
+        pass
+    color, spread, known = _combine(colors, shown)
     known &= spread < _WIDEST
     return TablePicture(color, spread, known, _stand_on(world_from_picture, solid, known.shape), world_from_picture)
 

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from threedfs.read_ahead import map_ahead
 from threedfs.segment.energy import BACKGROUND, EMPTY, OBJECT
 from threedfs.segment.lookup import find_pixels
 from threedfs.segment.outline import depth_inside
@@ -53,6 +54,7 @@ def carve_unary(
     masks: Mapping[str, np.ndarray],
     valid: Mapping[str, np.ndarray],
     tolerance: float,
+    threads: int = 1,
 ) -> np.ndarray:
     """Return the cost (N,) of the label object at voxels that project outside the object's masks (Eq. 27).
 
@@ -67,10 +69,16 @@ def carve_unary(
     masks, valid : mapping of str to (H, W) bool
         The object, and pixels that show the scene.
     tolerance : float
+    threads : int
+        Cores used; the result does not depend on it.
     """
     outside, shown = np.zeros(len(centres), np.int32), np.zeros(len(centres), np.int32)
-    for name, view in views.items():
-        row, column, kept = find_pixels(view, centres)
-        shown[kept] += valid[name][row, column]
-        outside[kept] += (valid[name] & ~masks[name])[row, column]
+
+    def look(name: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        row, column, kept = find_pixels(views[name], centres)
+        return kept, valid[name][row, column], (valid[name] & ~masks[name])[row, column]
+
+    for kept, is_shown, is_outside in map_ahead(look, views, threads=threads):
+        shown[kept] += is_shown
+        outside[kept] += is_outside
     return (outside > tolerance * shown).astype(np.float32)

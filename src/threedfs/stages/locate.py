@@ -24,10 +24,11 @@ from threedfs.params.locate import LocateParams
 from threedfs.params.rules import make_rule
 from threedfs.params.schema import make_params
 from threedfs.params.segment import SegmentParams
+from threedfs.read_ahead import map_ahead
 from threedfs.segment.extent import find_extent
 from threedfs.segment.gather import GatherRule, Scene
 from threedfs.segment.joint import CutRule
-from threedfs.segment.superpixels import split_image
+from threedfs.segment.superpixels import Superpixels, split_image
 from threedfs.types import Keyframe
 
 _SUPERPIXEL, _COMPACTNESS = 16.0, 10.0
@@ -81,7 +82,7 @@ def run(
     )
     if params.box_reach > 0:
         rule = make_params(SegmentParams, segmentation)
-        images = _gather_images(entries, read_crops(crops), read_consistency(consistency), edges, depth)
+        images = _gather_images(entries, read_crops(crops), read_consistency(consistency), edges, depth, job)
         around = found.box.grow(params.box_reach * found.box.longest)
         grid, part = cut_grid(volume.grid, around)
         located = stand_on(grid, found.plane, known[part], clearance * grid.spacing)
@@ -107,6 +108,7 @@ def run(
             ),
             generator,
             job.progress.note,
+            job.threads,
         )
         found = widen_support(found, known, shown, volume.grid, params.box_margin)
         used, enlarged = found.figures["margin_used"], found.figures["box_enlarged"]
@@ -123,19 +125,21 @@ def _gather_images(
     trust: ConsistencyStore,
     edges: Sequence[Path],
     depth: Sequence[Path],
+    job: Job,
 ) -> dict[str, dict[str, Any]]:
     """Return what the images show, by keyframe, as `Scene` takes it."""
     images = {name: store.image(name) for name in entries}
     valid = {name: store.valid_of(name) for name in entries}
     strength = {path.name.removesuffix(".zarr.zip"): read_edges(path) for path in edges}
+
+    def split(name: str) -> Superpixels:
+        return split_image(images[name], valid[name], strength[name], area=_SUPERPIXEL, compactness=_COMPACTNESS)
+
     return {
         "views": {name: entry.view for name, entry in entries.items()},
         "images": images,
         "valid": valid,
-        "superpixels": {
-            name: split_image(images[name], valid[name], strength[name], area=_SUPERPIXEL, compactness=_COMPACTNESS)
-            for name in entries
-        },
+        "superpixels": dict(zip(entries, map_ahead(split, entries, threads=job.threads), strict=True)),
         "depth": {path.name.removesuffix(".zarr.zip"): read_depth_map(path).depth for path in depth},
         "confidence": {name: trust.read(name).confidence for name in entries},
     }

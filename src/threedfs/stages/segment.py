@@ -79,10 +79,11 @@ def run(
     job.progress.note(f"{cut}: the {params.field} field, {len(views)} keyframes")
     generator = np.random.default_rng(job.seed)
     volume, bounds = gather_voxels(scene, gather)
-    table = picture_support(scene, bounds, gather)
-    images = gather_images(scene, volume, bounds, table, gather, generator)
+    table = picture_support(scene, bounds, gather, job.threads)
+    images = gather_images(scene, volume, bounds, table, gather, generator, job.threads)
     rule = make_rule(CutRule, params, components=params.color_components)
-    found = segment_jointly(images, volume if cut == "joint" else None, rule, generator, job.progress.note)
+    joint = volume if cut == "joint" else None
+    found = segment_jointly(images, joint, rule, generator, job.progress.note, job.threads)
     masks = {name: images[name].superpixels.paint(own == OBJECT) for name, own in found.superpixels.items()}
     if params.refine:
         drawn = {} if found.voxels is None else draw_voxels(found.voxels == OBJECT, place.grid, views, job.threads)
