@@ -54,6 +54,12 @@ def test_a_part_of_a_job_counts(followed):
     assert progress.share == pytest.approx((10 + 50 * 3 / 24) / 66)
 
 
+def test_what_a_job_says_behind_another_s_end_counts(followed):
+    progress, _ = followed
+    progress.follow("Finished jobid: 3 (Rule: depth)depth of mug 000120: done in 3.3 s (3/24)")
+    assert progress.share == pytest.approx((10 + 50 * 3 / 24) / 66)
+
+
 def test_what_is_taken_from_the_store_says_nothing_of_the_speed(followed):
     progress, _ = followed
     progress.follow("frames of mug: taken from the store in 0.1 s")

@@ -23,9 +23,17 @@ RULES = (
 FILMED = ("video.mp4", "cameras.json", "mesh.ply")
 
 
+def jobs_that_say(output: str, what: str) -> Counter:
+    """Count the jobs, and of those on keyframes the keyframes, that say something, by rule.
+
+    It may stand behind a line of Snakemake, which writes the ends of its lines apart.
+    """
+    return Counter(re.findall(rf"\b(\w+) of [^:\n]*: {what}", output))
+
+
 def jobs_done(output: str) -> Counter:
-    """Count the jobs, and of those on keyframes the keyframes, that computed, by rule."""
-    return Counter(re.findall(r"^(\w+) of .*: done in", output, re.MULTILINE))
+    """Count those that computed."""
+    return jobs_that_say(output, "done in")
 
 
 def records(results, sequence):
@@ -37,7 +45,7 @@ def records(results, sequence):
 
 def jobs_taken(output: str) -> Counter:
     """Count those that the store answered."""
-    return Counter(re.findall(r"^(\w+) of .*: taken from the store in", output, re.MULTILINE))
+    return jobs_that_say(output, "taken from the store in")
 
 
 def test_lists_every_rule(project):
@@ -94,7 +102,7 @@ def test_changed_crops_rerun_what_follows_and_nothing_before(finished):
 def test_changed_parameter_of_one_stage_of_a_rule_leaves_the_others(finished):
     (finished.folder / "other.yaml").write_text("superpixels: {area: 77}\n")
     output = finished.run("--configfile", "other.yaml")
-    at_work = Counter(re.findall(r"^(\w+) of .*: at work", output, re.MULTILINE))
+    at_work = jobs_that_say(output, "at work")
     assert at_work == Counter(superpixels=2) and set(jobs_done(output)) == {"cues"}
 
 

@@ -22,7 +22,8 @@ _TAKEN = 0.5
 _UNCOUNTED = ("all", "collect")
 
 _COUNT = re.compile(r"^(\w+)\s+(\d+)$")
-_FINISHED = re.compile(r"^Finished jobid: \d+ \(Rule: (\w+)\)")
+# Snakemake writes the end of this line apart, so what a job says meanwhile comes right behind it
+_FINISHED = re.compile(r"^Finished jobid: \d+ \(Rule: (\w+)\)(.*)$")
 _SAYS = re.compile(r"^(\w+) of (\S+)[^:]*: (.*)$")
 # keyframes of a job that works on each of them, or the frames of a video: the whole of a job, not a phase of it
 _PART = re.compile(r"(?:^source frame |\()(\d+)/(\d+)\)?$")
@@ -128,7 +129,8 @@ class Progress:
                 self._planned[match[1]] = int(match[2])
         elif match := _FINISHED.match(line):
             self._finish(match[1])
-        elif match := _SAYS.match(line):
+            line = match[2]
+        if match := _SAYS.match(line):
             self._listen(*match.groups())
         self.show()
 
