@@ -8,6 +8,7 @@ import pytest
 import trimesh
 
 from threedfs.errors import UserError
+from threedfs.geometry.grid import voxel_centres
 from threedfs.geometry.projection import backproject_map
 from threedfs.geometry.similarity import Similarity
 from threedfs.io.consistency import read_consistency, write_consistency
@@ -18,7 +19,7 @@ from threedfs.io.images import read_mask
 from threedfs.io.keyframes import write_keyframes
 from threedfs.io.points import write_points
 from threedfs.io.poses import Poses, write_poses
-from threedfs.io.volumes import read_silhouettes, read_support, read_volume
+from threedfs.io.volumes import read_silhouettes, read_support, read_volume, write_volume
 from threedfs.job import Job
 from threedfs.params.consistency import ConsistencyParams
 from threedfs.params.fuse_object import FuseObjectParams
@@ -64,14 +65,14 @@ def lay_out(folder, scene):
     write_frames(folder / "frames.zarr.zip", frames, HEADER, ordered=True, source_shape=(240, 320))
 
 
-def fuse(folder, volume, params, job, trust=None):
-    """Run fuse_object on what is in a folder, with another trust if it is given."""
+def fuse(folder, volume, params, job, trust=None, scene=None):
+    """Run fuse_object on what is in a folder, with another trust or scene if it is given."""
     fuse_object.run(
         keyframes=folder / "keyframes.json",
         depth=sorted((folder / "depth").iterdir()),
         consistency=trust or folder / "consistency.zarr.zip",
         support=folder / "support.json",
-        scene=folder / "scene.zarr.zip",
+        scene=scene or folder / "scene.zarr.zip",
         volume=volume,
         params=params,
         job=job,
@@ -185,6 +186,25 @@ def test_parameters_of_doubt_act(results, tmp_path, change):
     plain, said = doubt()
     assert "depth is unsure: mirror images of the support plane count 0." in said
     assert not np.array_equal(plain, doubt(**change)[0])
+
+
+def test_notches_of_the_coarse_object_are_doubted_too(results, table, tmp_path, monkeypatch):
+    """Contract: with its notch filled, a coarse sphere that was cut into serves more like a whole one."""
+    whole = read_volume(results / "scene.zarr.zip")
+    x, _, z = np.moveaxis(voxel_centres(whole.grid) - table.centre, -1, 0) / table.radius
+    notched = replace(whole, sdf=np.where((np.abs(x) < 0.25) & (z > -0.85) & (z < -0.2), np.float32(1), whole.sdf))
+    write_volume(tmp_path / "scene.zarr.zip", notched, HEADER)
+    params = FuseObjectParams(longest_side=60, mirrored_height=0.3, mirrored_from=0.999, mirrored_full=1.0)
+
+    def doubt(scene):
+        log, volume = io.StringIO(), tmp_path / "object.zarr.zip"
+        fuse(results, volume, params, Job(Progress("test", log), HEADER, 1), scene=scene / "scene.zarr.zip")
+        assert "mirror images of the support plane count 0.00" in log.getvalue()
+        return read_volume(volume).sdf
+
+    expected, filled = doubt(results), doubt(tmp_path)
+    monkeypatch.setattr(fuse_object, "fill_notches", lambda grid, solid, _: (grid, solid))
+    assert np.abs(filled - expected).sum() < np.abs(doubt(tmp_path) - expected).sum()
 
 
 def test_mesh_is_the_sphere_closed(results, table):

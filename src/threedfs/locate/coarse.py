@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+from skimage.morphology import convex_hull_image
 
-from threedfs.geometry.grid import cut_grid, voxel_centres
+from threedfs.geometry.grid import cover_box, cut_grid, voxel_centres, voxel_from_world
 from threedfs.locate.height import height_above
 from threedfs.types import Support, VoxelGrid
 
@@ -28,3 +29,34 @@ def mark_coarse(grid: VoxelGrid, sdf: np.ndarray, support: Support) -> tuple[Vox
     along = voxel_centres(around) @ support.box.axes.T
     inside = ((along >= support.box.low) & (along <= support.box.high)).all(axis=-1)
     return around, inside & (sdf[part] < 0) & (height_above(support.plane, around) > _CLEARANCE * grid.spacing)
+
+
+def fill_notches(grid: VoxelGrid, solid: np.ndarray, support: Support) -> tuple[VoxelGrid, np.ndarray]:
+    """Return a solid with the notches that it hangs over, and the grid of that, which stands on the plane.
+
+    Not in the paper. The plane's mirror image carves the lower part of an upright face, between its sides and under an
+    edge or a lid that are still there. A notch is what lies below the solid, and in the convex hull of what is solid at
+    its own height.
+
+    Parameters
+    ----------
+    grid : VoxelGrid
+    solid : (nx, ny, nz) bool
+        See `mark_coarse`.
+    support : Support
+
+    Returns
+    -------
+    standing : VoxelGrid
+        Over the object's box, of the same spacing.
+    filled : (mx, my, mz) bool
+    """
+    extent = support.box.high - support.box.low
+    standing = cover_box(support.box, int(np.ceil(extent.max() / grid.spacing)))
+    nearest = np.rint(voxel_from_world(grid, voxel_centres(standing))).astype(int)
+    held = ((nearest >= 0) & (nearest < grid.shape)).all(axis=-1)
+    filled = held & solid[tuple(np.moveaxis(np.where(held[..., None], nearest, 0), -1, 0))]
+    under = np.logical_or.accumulate(filled[:, :, ::-1], axis=2)[:, :, ::-1]
+    for level in np.flatnonzero(filled.any(axis=(0, 1))):
+        filled[:, :, level] |= under[:, :, level] & convex_hull_image(filled[:, :, level])
+    return standing, filled & (height_above(support.plane, standing) > _CLEARANCE * standing.spacing)

@@ -13,7 +13,7 @@ from threedfs.io.keyframes import read_keyframes
 from threedfs.io.volumes import Volume, read_support, read_volume, write_volume
 from threedfs.io.votes import read_votes
 from threedfs.job import Job
-from threedfs.locate.coarse import mark_coarse
+from threedfs.locate.coarse import fill_notches, mark_coarse
 from threedfs.params.fuse_object import FuseObjectParams
 from threedfs.params.rules import make_rule
 from threedfs.segment.outline import draw_voxels
@@ -68,11 +68,13 @@ def _doubt_votes(
 ) -> Iterator[Vote]:
     """Return the votes of the keyframes; mirror images are doubted where the object's depth is unsure."""
     grid, solid = mark_coarse(coarse.grid, coarse.sdf, place)
-    shown = draw_voxels(solid, grid, {name: entry.view for name, entry in entries.items()}, job.threads)
+    views = {name: entry.view for name, entry in entries.items()}
+    shown = draw_voxels(solid, grid, views, job.threads)
     rule = make_rule(DoubtRule, params)
     sureness = rate_shown(read_votes(entries, depth, trust), shown, place, rule)
     votes = read_votes(entries, depth, trust)
     if sureness == 1:
         return votes
     job.progress.note(f"depth is unsure: mirror images of the support plane count {sureness:.2f}")
-    return doubt_mirrored(votes, shown, place, rule, sureness)
+    grid, solid = fill_notches(grid, solid, place)
+    return doubt_mirrored(votes, draw_voxels(solid, grid, views, job.threads), place, rule, sureness)
