@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from skimage.morphology import convex_hull_image
 
-from threedfs.geometry.grid import cover_box, cut_grid, voxel_centres, voxel_from_world
+from threedfs.geometry.grid import cover_box, cut_grid, voxel_centres, voxel_index
 from threedfs.locate.height import height_above
 from threedfs.types import Support, VoxelGrid
 
@@ -53,9 +53,9 @@ def fill_notches(grid: VoxelGrid, solid: np.ndarray, support: Support) -> tuple[
     """
     extent = support.box.high - support.box.low
     standing = cover_box(support.box, int(np.ceil(extent.max() / grid.spacing)))
-    nearest = np.rint(voxel_from_world(grid, voxel_centres(standing))).astype(int)
-    held = ((nearest >= 0) & (nearest < grid.shape)).all(axis=-1)
-    filled = held & solid[tuple(np.moveaxis(np.where(held[..., None], nearest, 0), -1, 0))]
+    index, held = voxel_index(grid, voxel_centres(standing).reshape(-1, 3))
+    filled = held.reshape(standing.shape)
+    filled[filled] = solid[tuple(index.T)]
     under = np.logical_or.accumulate(filled[:, :, ::-1], axis=2)[:, :, ::-1]
     for level in np.flatnonzero(filled.any(axis=(0, 1))):
         filled[:, :, level] |= under[:, :, level] & convex_hull_image(filled[:, :, level])
