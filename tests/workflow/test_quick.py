@@ -122,12 +122,16 @@ def test_the_report_shows_what_was_found_and_the_failed_have_one_too(run):
 
 
 def test_the_report_shows_the_methods_of_the_run_and_after_a_failure_nothing_old(run, tmp_path):
-    """Contract: what other methods left is not listed; a job that only scores takes no mesh from the page."""
+    """Contract: what other methods left is not listed; a job that only scores takes no mesh from the page.
+
+    Made again, by several threads, it is the same.
+    """
     folder = tmp_path / "gnome"
     shutil.copytree(run[0] / "gnome", folder)
     store = run[0] / ".store"
     page = write_report(folder, Context(store, methods=("fused_sdf", "gc_2d"))).read_text()
     assert "fused_sdf/mesh.ply" in page and "surface/" not in page and "gc_2d/masks" in page
+    assert write_report(folder, Context(store, methods=("fused_sdf", "gc_2d"), threads=3)).read_text() == page
     stale = {str(folder / "06_depth"), str(folder / "04_crops/crops.zarr.zip")}
     page = write_report(folder, Context(store, failures=["crops: no."], stale=stale)).read_text()
     assert "data-page" not in page and "<h2>Keyframes" not in page and "mesh.glb" not in page

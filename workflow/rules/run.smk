@@ -66,6 +66,7 @@ def finish(unfinished=()):
             for name, entry in SEQUENCES.items()
         },
         library_versions(REPORTED),
+        threads=CORES or 1,
     )
     stale = {str(path) for path in unfinished}
     sys.stderr.write(finish_run(run, stale))

@@ -105,7 +105,7 @@ def cost_tables(scores: Scores, dataset: str, stages: Sequence[str]) -> list[Tab
     found = [name.removeprefix("seconds_") for name in scores.names if name.startswith("seconds_")]
     found.sort(key=lambda stage: stages.index(stage) if stage in stages else len(stages))
     kinds = (
-        ("seconds", "Seconds, of all cores together", ".1f", 1.0, "total"),
+        ("seconds", "Seconds, of all jobs together", ".1f", 1.0, "total"),
         ("peak_memory", "Peak memory of a job, MB", ".0f", 1.0, "largest"),
         ("bytes", "Written, MB", ".1f", 1e-6, "total"),
     )

@@ -84,6 +84,7 @@ def _lay_out(surface: TexturedMesh | Mesh, plane: Plane, path: np.ndarray) -> tr
     ground.apply_translation([(low[0] + high[0]) / 2, -0.001 * diagonal, (low[2] + high[2]) / 2])
     ground.visual.face_colors = [200, 196, 186, 255]
     scene.add_geometry(ground, geom_name="plane", node_name="plane")
+    scene.camera = trimesh.scene.Camera(name="eye", fov=(45, 45))  # without a name trimesh draws one, another each time
     scene.set_camera(angles=(-0.45, 0.6, 0), distance=_AWAY * diagonal, center=(low + high) / 2, fov=(45, 45))
     return scene
 

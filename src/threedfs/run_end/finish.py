@@ -71,6 +71,8 @@ class Run:
         Of each sequence, the settings that differ from the defaults.
     versions : mapping of str to str
         Of the libraries.
+    threads : int
+        Draw the reports; their number changes nothing in them.
     """
 
     results: Path
@@ -82,6 +84,7 @@ class Run:
     seed: int
     changes: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     versions: Mapping[str, str] = field(default_factory=dict)
+    threads: int = 1
 
     @property
     def collected(self) -> Path:
@@ -216,6 +219,7 @@ def report_run(run: Run, unfinished: Collection[str], note: Callable[[str], obje
             stages <= _SCORING,
             run.changes.get(sequence, {}),
             run.versions,
+            run.threads,
         )
 
     if due:
@@ -277,6 +281,6 @@ def _sum_up_costs(scores: Scores) -> str:
         for kind in ("seconds_", "peak_memory_", "bytes_")
     }
     return (
-        f"Cost when the work was done: {sum(totals['seconds_']):.0f} s of all cores together, at most "
+        f"Cost when the work was done: {sum(totals['seconds_']):.0f} s of all jobs together, at most "
         f"{max(totals['peak_memory_'], default=0):.0f} MB in a job, {sum(totals['bytes_']) / 1e6:.0f} MB written."
     )

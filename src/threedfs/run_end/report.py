@@ -23,6 +23,7 @@ from threedfs.io.scales import find_scale, tell_scale
 from threedfs.io.textured_meshes import read_textured_obj
 from threedfs.io.volumes import read_silhouettes
 from threedfs.object.stand import height_on
+from threedfs.read_ahead import map_ahead
 from threedfs.report.camera_path import draw_path, unfilmed_angle
 from threedfs.report.findings import Facts, Finding, doubt_truth, judge, sum_up
 from threedfs.report.page import KeyframePictures, Report, write_page
@@ -72,6 +73,8 @@ class Context:
     settings : mapping of str to str
         Those that differ from the defaults.
     versions : mapping of str to str
+    threads : int
+        Draw the pictures of keyframes; their number changes no page.
     """
 
     store: Path
@@ -82,6 +85,7 @@ class Context:
     scored_only: bool = False
     settings: Mapping[str, str] = field(default_factory=dict)
     versions: Mapping[str, str] = field(default_factory=dict)
+    threads: int = 1
 
 
 def write_report(folder: Path, context: Context) -> Path:
@@ -227,8 +231,9 @@ def _picture_keyframes(folder: Path, known: Known, context: Context, with_masks:
     with_depth = str(folder / "06_depth") not in context.stale
     drawn = (folder / "11_object" / name / "silhouettes.zarr.zip" for name in choose(MASK_METHODS, context.methods))
     masks = next((read_silhouettes(path) for path in drawn if with_masks and path.is_file()), {})
-    for name, keyframe in known.keyframes.items():
-        image, depth = store.image(name), folder / f"06_depth/{name}.zarr.zip"
+
+    def picture(name: str) -> KeyframePictures:
+        keyframe, image, depth = known.keyframes[name], store.image(name), folder / f"06_depth/{name}.zarr.zip"
         pictures = {"photograph": image}
         if name in masks and masks[name].shape == image.shape[:2]:
             pictures = {"mask": outline_mask(image, masks[name])} | pictures
@@ -236,7 +241,9 @@ def _picture_keyframes(folder: Path, known: Known, context: Context, with_masks:
             seen = read_depth_map(depth).depth
             pictures["depth"] = color_depth(seen, keyframe)
             pictures["normals"] = color_normals(normals_from_depth(keyframe.view.camera, seen))
-        yield KeyframePictures(name, {kind: embed_image(each, _LONGEST, 75, most) for kind, each in pictures.items()})
+        return KeyframePictures(name, {kind: embed_image(each, _LONGEST, 75, most) for kind, each in pictures.items()})
+
+    yield from map_ahead(picture, known.keyframes, threads=context.threads)
 
 
 def _tell_size(folder: Path, known: Known) -> str:
