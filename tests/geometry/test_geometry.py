@@ -90,6 +90,21 @@ def test_depth_map_of_a_plane_has_its_points_and_normal(view):
     assert np.abs(normals - expected).max() < 1e-9
 
 
+def test_normals_of_any_depth_map_are_the_cross_products_of_its_differences(view, random):
+    """Oracle: NumPy's gradient and cross product, where depth is rough, absent in places, and at the image's border."""
+    depth = random.uniform(0.5, 2.0, view.camera.shape)
+    depth[random.random(depth.shape) < 0.1] = np.nan
+    u, v = projection.pixel_grid(view.camera)
+    x, y = (u - view.camera.cx) / view.camera.fx, (v - view.camera.cy) / view.camera.fy
+    points = np.stack([x * depth, y * depth, depth], axis=-1)
+    expected = np.cross(np.gradient(points, axis=0), np.gradient(points, axis=1))
+    expected /= np.linalg.norm(expected, axis=-1, keepdims=True)
+    normals = projection.normals_from_depth(view.camera, depth)
+    assert 0.3 < np.isfinite(normals[..., 0]).mean() < 0.9
+    assert np.allclose(normals, expected, atol=1e-12, equal_nan=True)
+    assert np.nanmax((normals * points).sum(-1)) < 0  # facing the camera
+
+
 def test_alignment_finds_the_similarity_that_made_the_points(random):
     true = Similarity(2.5, rotation_of(random), random.normal(size=3))
     source = random.normal(size=(20, 3))

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 from numba import njit, prange
-from scipy.ndimage import minimum_filter
 
 from threedfs.geometry.transfer import px_from_px, transfer
 from threedfs.threads import use_threads
@@ -214,7 +214,8 @@ def _extend(values: np.ndarray, shape: tuple[int, int], missing: float | bool) -
 
 def _local_minimum(depth: np.ndarray) -> np.ndarray:
     """Least depth in 3x3: a point beside a silhouette is not in front of the background it is rounded onto."""
-    return minimum_filter(np.where(np.isnan(depth), np.inf, depth), size=3, mode="nearest").astype(np.float32)
+    known = np.where(np.isnan(depth), np.float32(np.inf), depth)
+    return cv2.erode(known, np.ones((3, 3), np.uint8), borderType=cv2.BORDER_REPLICATE)
 
 
 @njit(cache=True, parallel=True)

@@ -220,9 +220,11 @@ def facing_cosine(camera: Camera, depth: np.ndarray) -> np.ndarray:
     share = blur(known.astype(np.float64), _NORMAL_SMOOTHING)
     smooth = np.divide(smooth, share, out=np.full(depth.shape, np.nan), where=share > 0.5)
     u, v = pixel_grid(camera)
-    rays = np.stack([(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, np.ones_like(u)], axis=-1)
-    rays /= np.linalg.norm(rays, axis=-1, keepdims=True)
-    return np.nan_to_num(-(normals_from_depth(camera, smooth) * rays).sum(-1))
+    x, y = (u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy
+    length = np.sqrt(x * x + y * y + 1.0)
+    normals = normals_from_depth(camera, smooth)
+    along = normals[..., 0] * (x / length) + normals[..., 1] * (y / length) + normals[..., 2] * (1.0 / length)
+    return np.nan_to_num(-along)
 
 
 @njit(nogil=True, cache=True, parallel=True)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
+from numba import njit
 
 from threedfs.types import Camera, View
 
@@ -47,8 +50,33 @@ def inside(camera: Camera, pixels: np.ndarray) -> np.ndarray:
 
 def normals_from_depth(camera: Camera, depth: np.ndarray) -> np.ndarray:
     """Return unit normals (H, W, 3) in camera axes, facing the camera, by central differences; NaN where undefined."""
-    u, v = pixel_grid(camera)
-    points = np.stack([(u - camera.cx) / camera.fx * depth, (v - camera.cy) / camera.fy * depth, depth], axis=-1)
-    normal = np.cross(np.gradient(points, axis=0), np.gradient(points, axis=1))
-    normal /= np.linalg.norm(normal, axis=-1, keepdims=True)
-    return np.where((normal * points).sum(-1, keepdims=True) > 0, -normal, normal)
+    normals = np.empty((*depth.shape, 3))
+    _find_normals(depth.astype(np.float64), camera.fx, camera.fy, camera.cx, camera.cy, normals)
+    return normals
+
+
+@njit(nogil=True, cache=True, error_model="numpy")
+def _find_normals(depth, fx, fy, cx, cy, normals):
+    rows, columns = depth.shape
+    for row in range(rows):
+        up, down = max(row - 1, 0), min(row + 1, rows - 1)
+        y = (row - cy) / fy
+        for column in range(columns):
+            left, right = max(column - 1, 0), min(column + 1, columns - 1)
+            x = (column - cx) / fx
+            above, below = depth[up, column], depth[down, column]
+            before, behind = depth[row, left], depth[row, right]
+            # Steps from point to point; down x right faces the camera wherever depths are positive.
+            down_x = (x * below - x * above) / (down - up)
+            down_y = ((down - cy) / fy * below - (up - cy) / fy * above) / (down - up)
+            down_z = (below - above) / (down - up)
+            right_x = ((right - cx) / fx * behind - (left - cx) / fx * before) / (right - left)
+            right_y = (y * behind - y * before) / (right - left)
+            right_z = (behind - before) / (right - left)
+            normal_x = down_y * right_z - down_z * right_y
+            normal_y = down_z * right_x - down_x * right_z
+            normal_z = down_x * right_y - down_y * right_x
+            length = math.sqrt(normal_x * normal_x + normal_y * normal_y + normal_z * normal_z)
+            normals[row, column, 0] = normal_x / length
+            normals[row, column, 1] = normal_y / length
+            normals[row, column, 2] = normal_z / length

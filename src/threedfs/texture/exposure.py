@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 
+import cv2
 import numpy as np
 
 from threedfs.texture.vertices import ABSENT, median_samples
@@ -45,4 +46,5 @@ def apply_gains(samples: np.ndarray, gains: np.ndarray) -> np.ndarray:
 
 def expose(image: np.ndarray, gain: np.ndarray) -> np.ndarray:
     """Return an image (H, W, 3) uint8 as a gain (3,) makes it."""
-    return np.clip(np.rint(image * gain), 0, _PEAK).astype(np.uint8)
+    level = np.arange(_PEAK + 1)[:, None]
+    return cv2.LUT(image, np.clip(np.rint(level * gain), 0, _PEAK).astype(np.uint8)[None])

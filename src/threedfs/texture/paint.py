@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -15,6 +16,9 @@ from threedfs.texture.exposure import expose, find_gains
 from threedfs.texture.textured import TexturedMesh
 from threedfs.texture.vertices import GRAZING, Reader, sample_vertices
 from threedfs.types import Mesh, View
+
+_KEPT = 100
+"""Photographs in memory, each of which is read for many blocks of texels: 120 MB of crops."""
 
 
 @dataclass(frozen=True)
@@ -70,6 +74,7 @@ def paint_mesh(mesh: Mesh, views: Sequence[View], read_image: Reader, read_valid
     gains = find_gains(samples)
     gain_of = {view.name: gain for view, gain in zip(views, gains, strict=True)}
 
+    @lru_cache(_KEPT)
     def read_exposed(name: str) -> np.ndarray:
         return expose(read_image(name), gain_of[name])
 
