@@ -104,7 +104,9 @@ def test_the_path_shows_every_camera_and_tells_keyframes_apart():
 def test_pictures_have_the_colours_that_they_promise():
     mask = np.zeros((30, 40), bool)
     mask[10:20, 10:20] = True
-    drawn = outline_mask(np.zeros((30, 40, 3), np.uint8), mask)
+    image = np.zeros((30, 40, 3), np.uint8)
+    drawn = outline_mask(image, mask)
+    assert not image.any()  # the page shows the photograph as it is beside it
     assert (drawn[10, 10:20] == (0, 255, 0)).all() and not drawn[15, 15].any()
     keyframe = Keyframe(ring([0])[0], (), 1.0, 4.0)
     near, far = (color_depth(np.full((2, 2), depth), keyframe)[0, 0] for depth in (1.05, 3.9))

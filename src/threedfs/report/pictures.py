@@ -16,10 +16,10 @@ _SMALLEST = 80
 
 
 def outline_mask(image: np.ndarray, mask: np.ndarray) -> np.ndarray:
-    """Return an image (H, W, 3) uint8 RGB with the outline of a mask (H, W) bool in green."""
+    """Return a copy of an image (H, W, 3) uint8 RGB with the outline of a mask (H, W) bool in green."""
     contours, _ = cv2.findContours(mask.astype(np.uint8), cv2.RETR_LIST, cv2.CHAIN_APPROX_NONE)
     width = max(1, round(max(mask.shape) / 300))
-    return cv2.drawContours(np.ascontiguousarray(image), contours, -1, _GREEN, width)
+    return cv2.drawContours(np.array(image, order="C"), contours, -1, _GREEN, width)
 
 
 def color_depth(depth: np.ndarray, keyframe: Keyframe) -> np.ndarray:
