@@ -103,6 +103,8 @@ def test_normals_of_any_depth_map_are_the_cross_products_of_its_differences(view
     assert 0.3 < np.isfinite(normals[..., 0]).mean() < 0.9
     assert np.allclose(normals, expected, atol=1e-12, equal_nan=True)
     assert np.nanmax((normals * points).sum(-1)) < 0  # facing the camera
+    with pytest.raises(ValueError, match="expected a depth map of"):
+        projection.normals_from_depth(view.camera, depth[:-1])
 
 
 def test_alignment_finds_the_similarity_that_made_the_points(random):

@@ -209,3 +209,4 @@ def test_the_others_are_named_with_their_reason(run):
     assert "failed: poses: expected the image to move by at least 3 pixels" in lines["static  "]
     assert "failed: frames: sequences.lost.source: expected a file or folder, found no lost.mp4" in lines["lost    "]
     assert "1 of 3" in output and "the camera is static" in output.partition("Tables and plots")[2]
+    assert "Reports: results/index.html\n" in output

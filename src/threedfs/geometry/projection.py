@@ -49,7 +49,17 @@ def inside(camera: Camera, pixels: np.ndarray) -> np.ndarray:
 
 
 def normals_from_depth(camera: Camera, depth: np.ndarray) -> np.ndarray:
-    """Return unit normals (H, W, 3) in camera axes, facing the camera, by central differences; NaN where undefined."""
+    """Return unit normals (H, W, 3) in camera axes by central differences; NaN where undefined.
+
+    They face the camera, as depths are positive.
+
+    Raises
+    ------
+    ValueError
+        If the depth map (H, W) has not the size of the camera's image.
+    """
+    if depth.shape != camera.shape:
+        raise ValueError(f"expected a depth map of {camera.shape}, got one of {depth.shape}")
     normals = np.empty((*depth.shape, 3))
     _find_normals(depth.astype(np.float64), camera.fx, camera.fy, camera.cx, camera.cy, normals)
     return normals
@@ -65,14 +75,14 @@ def _find_normals(depth, fx, fy, cx, cy, normals):
             left, right = max(column - 1, 0), min(column + 1, columns - 1)
             x = (column - cx) / fx
             above, below = depth[up, column], depth[down, column]
-            before, behind = depth[row, left], depth[row, right]
-            # Steps from point to point; down x right faces the camera wherever depths are positive.
+            on_left, on_right = depth[row, left], depth[row, right]
+            # Steps from point to point. Down x right faces the camera.
             down_x = (x * below - x * above) / (down - up)
             down_y = ((down - cy) / fy * below - (up - cy) / fy * above) / (down - up)
             down_z = (below - above) / (down - up)
-            right_x = ((right - cx) / fx * behind - (left - cx) / fx * before) / (right - left)
-            right_y = (y * behind - y * before) / (right - left)
-            right_z = (behind - before) / (right - left)
+            right_x = ((right - cx) / fx * on_right - (left - cx) / fx * on_left) / (right - left)
+            right_y = (y * on_right - y * on_left) / (right - left)
+            right_z = (on_right - on_left) / (right - left)
             normal_x = down_y * right_z - down_z * right_y
             normal_y = down_z * right_x - down_x * right_z
             normal_z = down_x * right_y - down_y * right_x

@@ -180,7 +180,7 @@ def _tell_costs(costs: Sequence[tuple[str, float, float]]) -> str:
     total = sum(seconds for _, seconds, _ in costs)
     return _section(
         "Time and memory",
-        f"<p>{total:.0f} seconds of all jobs together, when the work was done; some of them use several cores.</p>",
+        f"<p>{total:.0f} seconds of all jobs together, when the work was done; some jobs use several cores.</p>",
         f"<table><tr><th>stage</th><th>seconds</th><th>peak MB</th><th></th></tr>{rows}</table>",
     )
 

@@ -142,7 +142,8 @@ def finish_run(run: Run, unfinished: Collection[str] = ()) -> str:
     told = _summarise(Scores(said, run.datasets, run.methods, tuple(failures), run.seed))
     if failures:
         run.collected.unlink(missing_ok=True)
-    return f"\n{told}\n\nTables and plots: {run.results}/tables, {run.results}/plots\n{refused}"
+    places = f"Reports: {run.results}/index.html\nTables and plots: {run.results}/tables, {run.results}/plots"
+    return f"\n{told}\n\n{places}\n{refused}"
 
 
 def _read_own(run: Run, unfinished: Collection[str]) -> list[Metric]:
