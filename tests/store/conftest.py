@@ -42,6 +42,9 @@ def toolbox(tmp_path: Path, monkeypatch) -> Path:
     (package / "unrelated.py").write_text(UNRELATED)
     monkeypatch.syspath_prepend(str(tmp_path / "src"))
     monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "kernels"))  # put back after `perform` has changed it
+    # else Python runs the old bytecode where a test edits a source within a second and leaves its size the same
+    monkeypatch.setattr(sys, "dont_write_bytecode", True)
+    monkeypatch.setenv("PYTHONDONTWRITEBYTECODE", "1")
     yield package
     for name in [name for name in sys.modules if name.partition(".")[0] == "toolbox"]:
         del sys.modules[name]
